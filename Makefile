@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+python := .venv/bin/python
+
+help:            ## this list
+	@sed -n 's/^\([a-z]*\):[^#]*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 18
+
+setup:           ## .venv with Blender's module, tests' packages and what they need from the system
+	@PYTHON='$(PYTHON)' tools/setup.sh
+
+test: setup      ## every test, under 15 minutes on two cores; make test PYTEST='tests/test_package.py -k zip' for some
+	$(python) -m pytest $(PYTEST)
+
+package: setup   ## dist/afterlight-<version>.zip, to be installed in Blender
+	$(python) tools/extension.py package
+
+demo: setup      ## before and after pictures of the sample scenes
+	$(python) sample_blends/demo.py
+
+samples: setup   ## write the sample scenes again from their scripts
+	$(python) sample_blends/make.py
+
+bench: setup     ## time of each stage beside EEVEE's, and memory
+	$(python) benchmarks/bench.py
+
+clean:           ## remove what was made, but for .venv and the downloaded wheels
+	rm -rf dist build .pytest_cache .hypothesis
+	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
+
+.PHONY: help setup test package demo samples bench clean

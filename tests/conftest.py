@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every test stands on: the extension, packaged and installed as a user would, and an empty Blender file."""
+
+import pytest
+
+import extension
+
+# At import, because test modules import bpy at their top and pytest imports this file before them.
+USER_FOLDER = extension.use_temporary_preferences()
+
+try:
+    import bpy
+except ImportError as error:
+    pytest.exit(f"Blender's module does not load: {error}. 'make setup' installs what is missing, or names it.", 3)
+
+
+@pytest.fixture(scope="session")
+def gpu_ready():
+    """The `gpu` module usable without any render. Fails readably where there is no OpenGL at all."""
+    import gpu
+    try:
+        gpu.init()
+    except SystemError as error:
+        pytest.fail(f"Blender found no GPU, not even a software one: {error}. 'make setup' installs Mesa, or says how.")
+
+
+@pytest.fixture(scope="session")
+def package(tmp_path_factory):
+    """Path of the zip, built from the working tree as `make package` does. Cheap: 0.3 s once the wheels are there."""
+    return extension.package(tmp_path_factory.mktemp("package"))
+
+
+@pytest.fixture(scope="session")
+def afterlight(package, gpu_ready):
+    """The package module bl_ext.user_default.afterlight, installed from the zip and enabled."""
+    return extension.install(package)
+
+
+@pytest.fixture
+def fresh(afterlight):
+    """The one scene of an empty file: no objects, factory settings, the extension still enabled."""
+    # Not read_factory_settings: that resets the preferences as well, and with them the extension is off.
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return bpy.context.scene
