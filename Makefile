@@ -13,13 +13,13 @@ test: setup      ## every test, under 15 minutes on two cores; make test PYTEST=
 package: setup   ## dist/afterlight-<version>.zip, to be installed in Blender
 	$(python) tools/extension.py package
 
-demo: setup      ## before and after pictures of the sample scenes
+demo: package    ## before and after pictures of the sample scenes
 	$(python) sample_blends/demo.py
 
-samples: setup   ## write the sample scenes again from their scripts
-	$(python) sample_blends/make.py
+samples: package ## write the sample scenes again from their scripts
+	$(python) sample_blends/make_samples.py
 
-bench: setup     ## time of each stage beside EEVEE's, and memory
+bench: package   ## time of each stage beside EEVEE's, and memory
 	$(python) benchmarks/bench.py
 
 clean:           ## remove what was made, but for .venv and the downloaded wheels
