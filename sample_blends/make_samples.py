@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Write the sample scenes, each from the module of its name in this folder, with Afterlight switched on.
+
+    .venv/bin/python sample_blends/make_samples.py [NAME ...] [--plain] [--folder FOLDER]
+    blender -b -P sample_blends/make_samples.py -- [NAME ...]
+"""
+
+import argparse
+import importlib
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))               # Blender's -P does not do it
+
+import session  # noqa: E402
+
+SAMPLES = ("cornell_box", "sunlit_room", "many_lights", "emissive_sign", "sculpture")
+LARGEST = 2_000_000                         # bytes; the samples are kept in the repository
+
+
+def make(name, folder, plain):
+    """Build one sample and save it compressed; return the file's path."""
+    import bpy
+    import parts
+
+    scene = parts.empty_scene(name)
+    importlib.import_module(name).build(scene)
+    scene.render.filepath = f"//{name}_"
+    if not plain:
+        session.tick(scene)
+    path = folder / f"{name}.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), check_existing=False, compress=True)
+    if path.stat().st_size > LARGEST:
+        sys.exit(f"{path} has {path.stat().st_size} bytes; at most {LARGEST} are wanted.")
+    return path
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Write Afterlight's sample scenes.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of: {', '.join(SAMPLES)}; all without")
+    parser.add_argument("--plain", action="store_true", help="without Afterlight, for a look at the bare scenes")
+    parser.add_argument("--folder", type=Path, default=HERE, help="where to write; beside this script without")
+    options = parser.parse_args(session.arguments())
+    if unknown := set(options.names) - set(SAMPLES):
+        parser.error(f"no sample is called {', '.join(sorted(unknown))}; there are {', '.join(SAMPLES)}")
+    if not options.plain:
+        session.enable_afterlight()
+    folder = options.folder.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in options.names or SAMPLES:
+        path = make(name, folder, options.plain)
+        print(f"{path}: {path.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
