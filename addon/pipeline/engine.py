@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine of the helper scene. Blender calls it after the user's scene has been rendered by EEVEE and before
+the compositor runs; what it returns is the indirect light of that very frame.
+
+A frame, from passes to picture: update() looks at the scene while Blender keeps it still; render() saves the passes,
+loads those of the view layer at hand, gathers (light/pipeline.py) and hands the result back as the pass Indirect.
+"""
+
+import time
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from .. import light, settings
+from . import checks, passes, status
+from .nodes import PASS
+from .status import Problem
+from .wiring import ENGINE
+
+
+@dataclass
+class Shot:
+    """What a frame of one view layer needs to know of the scene, and the scene itself."""
+
+    scene: bpy.types.Scene
+    layer: str
+    window: tuple
+    camera: light.Camera = None
+    settings: light.Settings = None
+    problem: str = ""
+
+
+class AfterlightEngine(bpy.types.RenderEngine):
+    bl_idname = ENGINE
+    bl_label = "Afterlight (used by its helper scenes)"
+    bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
+    bl_use_gpu_context = True
+
+    def update_render_passes(self, scene, layer):
+        self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
+
+    def update(self, data, depsgraph):
+        """Look at the scene: Blender holds the interface off while this runs, so it is short."""
+        self.shot = None
+        source = depsgraph.scene.afterlight.source
+        if source is None:
+            self.report({"ERROR"}, "Afterlight: this engine works for its helper scenes only. Set Render Engine to "
+                                   "EEVEE and tick Indirect Light")
+            return
+        self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0])
+        shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
+        if not shot.problem:
+            shot.settings = settings.light_settings(source.afterlight, source.frame_current)
+            shot.camera = self._look(depsgraph, source)
+
+    def render(self, depsgraph):
+        """Gather, and hand back the pass. Whatever happens the pass is there, black if it must be."""
+        shot = self.shot
+        if shot is None:
+            return
+        picture = None
+        try:
+            if shot.problem:
+                raise Problem(shot.problem)
+            picture = self._gather(shot)
+        except light.Cancelled:
+            pass
+        except (Problem, light.GpuUnavailable) as problem:
+            if status.fail(shot.scene, str(problem)):
+                self.report({"ERROR"}, f"Afterlight: {problem}")
+        self._hand_back(shot, picture)
+
+    def render_frame_finish(self):
+        """All view layers of the frame are done: their passes' file is no longer needed."""
+        if getattr(self, "file", None):
+            passes.discard(self.file)
+            self.file = None
+
+    def _look(self, depsgraph, source):
+        """light.Camera of the frame. `source`'s camera is evaluated through our own depsgraph, with nothing else of
+        the scene but what moves the camera."""
+        helper, render = depsgraph.scene, source.render
+        same_time = ((helper.render.frame_map_old, helper.render.frame_map_new, helper.frame_subframe)
+                     == (render.frame_map_old, render.frame_map_new, source.frame_subframe))
+        if helper.camera == source.camera and same_time:
+            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source)
+        own = helper.camera
+        helper.render.frame_map_old, helper.render.frame_map_new = render.frame_map_old, render.frame_map_new
+        try:
+            helper.camera = source.camera
+            self.frame_set(source.frame_current, source.frame_subframe)
+            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source)
+        finally:
+            helper.camera = own
+
+    def _gather(self, shot):
+        stages = {}
+        start = time.perf_counter()
+        if not getattr(self, "file", None):  # the first view layer of the frame saves the passes of all
+            self._progress("Saving passes", 0.0)
+            self.file = passes.save(shot.scene)
+            stages["write passes"] = time.perf_counter() - start
+        start = time.perf_counter()
+        frame = passes.load(self.file, shot.layer, shot.window)
+        broken = frame.repair()
+        stages["read passes"] = time.perf_counter() - start
+        for name, count in broken.items():
+            self.report({"WARNING"}, f"Afterlight: {count} pixels of {name.replace('_', ' ')} in {shot.layer} are NaN "
+                                     "or infinite. They neither give nor get indirect light; look for a material that "
+                                     "divides by zero or a light of unbounded strength")
+        timed = {} if status.wants_stages else None
+        picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed)
+        status.timed(shot.scene, stages | (timed or {"gather on the GPU": time.perf_counter() - start}))
+        return picture
+
+    def _progress(self, stage, fraction):
+        self.update_stats("Afterlight", f"{stage.replace('_', ' ').capitalize()}, {fraction:.0%}")
+        self.update_progress(fraction)
+        return self.test_break()
+
+    def _hand_back(self, shot, picture):
+        """Indirect light into the pass; the same into Combined, so that the layer's image is not just black."""
+        *_, width, height = shot.window
+        result = self.begin_result(0, 0, width, height, layer=shot.layer)
+        for render_pass in result.layers[0].passes:
+            size = result.resolution_x * result.resolution_y, render_pass.channels
+            pixels = np.zeros(size, np.float32)
+            if picture is not None:
+                pixels[:] = picture.reshape(-1, 4)[:, :render_pass.channels]
+            render_pass.rect.foreach_set(pixels.reshape(-1))
+        self.end_result(result)
+
+
+def register():
+    bpy.utils.register_class(AfterlightEngine)
+
+
+def unregister():
+    bpy.utils.unregister_class(AfterlightEngine)
+    light.release()

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Our nodes in a compositor tree: how they get between a Render Layers node's image and what used it, and out again.
+
+    Render Layers (scene, layer).Image ------------- A
+                                                     add: A + B -> whatever used the image
+    light: Render Layers (helper, layer).Indirect -- B
+
+Nodes of ours carry the custom property MARK with their role. All that is known is read off the nodes themselves, so
+what a user moves, renames or deletes is never restored from a record that has gone stale.
+"""
+
+MARK = "afterlight"
+PASS = "Indirect"
+A, B, RESULT = "A_Color", "B_Color", "Result_Color"
+
+
+def trees(tree):
+    """The tree and every node group in it, at any depth, each once."""
+    found, open_trees = [], [tree]
+    while open_trees:
+        tree = open_trees.pop()
+        if tree is not None and tree not in found:
+            found.append(tree)
+            open_trees += [node.node_tree for node in tree.nodes if node.bl_idname == "CompositorNodeGroup"]
+    return found
+
+
+def all_nodes(tree):
+    """Every node of the tree and of the groups in it."""
+    return [node for group in trees(tree) for node in group.nodes]
+
+
+def role(node):
+    """"add", "light", "plain" (an ordinary node in a tree we made), or None for the user's own."""
+    return node.get(MARK)
+
+
+def shows(node, scene):
+    """Whether the node is a Render Layers node of `scene`, ours or the user's."""
+    return node.bl_idname == "CompositorNodeRLayers" and node.scene == scene
+
+
+def pictures(tree, scene):
+    """The Render Layers nodes that bring the plain picture of `scene` into the tree or its groups."""
+    return [node for node in all_nodes(tree) if shows(node, scene) and role(node) != "light"]
+
+
+def goes_dark(node):
+    """Whether somebody uses the image of this Render Layers node without our light in it."""
+    return any(role(link.to_node) != "add" for link in node.outputs["Image"].links)
+
+
+def splice(tree, picture, helper):
+    """Put the light of `helper` between the image of a Render Layers node and whatever uses it."""
+    links = [link for link in picture.outputs["Image"].links if role(link.to_node) != "add"]
+    if not links:
+        return
+    users = [(link.to_socket, link.is_muted) for link in links]
+    add = _new(tree, "ShaderNodeMix", "add")
+    add.name = add.label = "Afterlight"
+    add.data_type, add.blend_type, add.clamp_result = "RGBA", "ADD", False
+    socket(add.inputs, "Factor_Float").default_value = 1.0
+    socket(add.inputs, B).default_value = (0.0, 0.0, 0.0, 1.0)
+    light = light_node(tree, helper, picture.layer)
+    for user, is_muted in users:
+        tree.links.new(socket(add.outputs, RESULT), user).is_muted = is_muted
+    tree.links.new(picture.outputs["Image"], socket(add.inputs, A))
+    tree.links.new(light.outputs[PASS], socket(add.inputs, B))
+    add.parent = light.parent = picture.parent
+    x, y = picture.location
+    add.location = (x + picture.width + 20, y + 60)
+    light.location = (x, y - 330)
+
+
+def unsplice(tree, scene, helper):
+    """Take out what splice() put in for `scene`, and give its users the plain image again."""
+    lights = [node for node in tree.nodes if role(node) == "light" and node.scene in (helper, None)]
+    for add in [node for node in tree.nodes if role(node) == "add"]:
+        light, picture = source(add, B), source(add, A)
+        if (light in lights) if light else (picture is None or shows(picture, scene)):
+            plain = next((link.from_socket for link in socket(add.inputs, A).links), None)
+            users = [(link.to_socket, link.is_muted) for link in socket(add.outputs, RESULT).links]
+            tree.nodes.remove(add)
+            for user, is_muted in users if plain else ():
+                tree.links.new(plain, user).is_muted = is_muted
+    for light in lights:
+        tree.nodes.remove(light)
+
+
+def light_node(tree, helper, layer):
+    """A Render Layers node that shows the indirect light of one view layer."""
+    light = _new(tree, "CompositorNodeRLayers", "light")
+    light.label = "Afterlight: Indirect Light"
+    light.scene, light.layer = helper, layer
+    return light
+
+
+def retarget(tree, scene, old, helper):
+    """Make our light nodes show `helper` instead of `old`, and the view layer that the picture beside them shows.
+
+    Returns whether anything changed."""
+    changed = False
+    for node in tree.nodes:
+        if role(node) == "light" and node.scene in (old, None) and node.scene != helper:
+            layer = node.layer
+            node.scene = helper
+            if layer in helper.view_layers:
+                node.layer = layer
+            changed = True
+    for add in [node for node in tree.nodes if role(node) == "add"]:
+        light, picture = source(add, B), source(add, A)
+        if light and picture and role(light) == "light" and light.scene == helper and shows(picture, scene):
+            if light.layer != picture.layer:
+                light.layer = picture.layer
+                changed = True
+    return changed
+
+
+def source(node, identifier):
+    """The node that an input is linked to, or None."""
+    return next((link.from_node for link in socket(node.inputs, identifier).links), None)
+
+
+def socket(sockets, identifier):
+    return next(each for each in sockets if each.identifier == identifier)
+
+
+def _new(tree, idname, kind):
+    active, selected = tree.nodes.active, [node for node in tree.nodes if node.select]
+    node = tree.nodes.new(idname)
+    node[MARK] = kind
+    node.select = False
+    tree.nodes.active = active
+    for other in selected:
+        other.select = True
+    return node

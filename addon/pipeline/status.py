@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last render of each scene has to say to people: in the panel, in a pop-up, and as the exit code of -b."""
+
+import atexit
+import ctypes
+import os
+import shutil
+import sys
+
+import bpy
+
+_messages = {}
+_stages = {}
+_failed = False
+wants_stages = False  # a benchmark sets it: the GPU is then waited for after each stage
+
+
+class Problem(Exception):
+    """Something in the user's scene or machine keeps the light out. Its text says what, and what to do."""
+
+
+def begin(scene):
+    """Forget what the render before had to say."""
+    _messages.pop(scene.session_uid, None)
+
+
+def fail(scene, text):
+    """Remember why `scene` was not lit. Returns True where that was not known yet in this render."""
+    global _failed
+    _failed = True
+    known = _messages.setdefault(scene.session_uid, text)
+    if known == text and not bpy.app.background:
+        bpy.app.timers.register(lambda: _pop_up(text))
+    return known == text
+
+
+def message(scene):
+    """Why the last render of `scene` was not lit; an empty string where it was."""
+    return _messages.get(scene.session_uid, "")
+
+
+def timed(scene, stages):
+    """Keep the seconds that each stage of the last render took, in order."""
+    _stages[scene.session_uid] = stages
+
+
+def stages(scene):
+    """Seconds by stage of the last render of `scene`; empty where there was none."""
+    return _stages.get(scene.session_uid, {})
+
+
+def _pop_up(text):
+    def draw(menu, _context):
+        menu.layout.label(text=text)
+    bpy.context.window_manager.popup_menu(draw, title="Afterlight: the picture has no indirect light", icon="ERROR")
+
+
+def _exit_code():
+    """Make `blender -b` end with 1 after a render that could not be lit.
+
+    Blender offers no way to set its exit code from an engine (an error reported from a scene that the compositor asks
+    for is printed and forgotten), so this ends the process at Python's own exit, which is nearly Blender's last act.
+    """
+    if not _failed:
+        return
+    print("Afterlight: exit code 1, because a render was not lit", file=sys.stderr)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    try:  # Blender's own output waits in C's buffers when it goes to a file
+        ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
+    except OSError:
+        pass
+    shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
+    os._exit(1)
+
+
+def register():
+    # As a Python module (no binary) Blender is a guest in somebody's process, whose exit is theirs.
+    if bpy.app.background and bpy.app.binary_path:
+        atexit.register(_exit_code)
+
+
+def unregister():
+    # At Blender's exit extensions are switched off before Python ends: a failure must outlive that.
+    if not _failed:
+        atexit.unregister(_exit_code)
+    _messages.clear()
+    _stages.clear()

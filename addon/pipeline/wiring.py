@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What ticking the box puts into a file, and unticking takes out: passes, helper scene, compositor nodes."""
+
+import bpy
+
+from . import nodes
+from .nodes import MARK
+from .passes import PASSES
+
+ENGINE = "AFTERLIGHT"
+HELPER_NAME = ".Afterlight ({})"  # Blender leaves names with a leading dot out of its menus
+TREE_NAME = "Afterlight Compositing"
+
+
+def connect(scene):
+    """Set up all that a lit render of `scene` needs. Does nothing to what is in place already."""
+    settings = scene.afterlight
+    old, helper = settings.helper, _own_helper(scene)
+    _mirror_layers(scene, helper)
+    tree = _tree_in_use(scene)
+    for group in nodes.trees(tree):
+        if _owner(group, scene):
+            nodes.retarget(group, scene, old, helper)
+    for picture in nodes.pictures(tree, scene):
+        nodes.splice(picture.id_data, picture, helper)
+    if nodes.pictures(tree, scene) and not any(nodes.shows(node, helper) for node in tree.nodes):
+        # Blender looks for scenes to render only among the nodes of the top level, not in groups.
+        nodes.light_node(tree, helper, nodes.pictures(tree, scene)[0].layer).location = (-400, -400)
+    follow(scene)
+
+
+def follow(scene):
+    """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
+    the scene renamed or copied. Puts no node where the user may have taken one away."""
+    helper = scene.afterlight.helper
+    if helper is not None and helper.afterlight.source != scene:
+        return connect(scene)  # a copied scene: it still names the helper of its original
+    if helper is None:
+        return None  # deleted by hand: checks.py says so, with a button
+    changed = _mirror_layers(scene, helper)
+    for group in nodes.trees(scene.compositing_node_group):
+        changed |= nodes.retarget(group, scene, helper, helper)
+    lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
+    for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
+        changed |= _assign(mirror, "use", layer.use and layer.name in lit)
+        if layer.name in lit:
+            _switch_passes_on(layer)
+    changed |= _assign(helper, "name", HELPER_NAME.format(scene.name)[:250])
+    if changed:
+        # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
+        helper.view_layers[0].update()
+    return None
+
+
+def disconnect(scene):
+    """Take out all that connect() put in and restore what was there; keep what the user has built on it."""
+    settings, helper = scene.afterlight, scene.afterlight.helper
+    for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
+        for group in nodes.trees(tree):
+            nodes.unsplice(group, scene, helper)
+    _restore_tree(scene)
+    for layer in scene.view_layers:
+        _switch_passes_off(scene, layer)
+    settings.helper = None
+    if helper is not None and helper.afterlight.source == scene:
+        _remove_helper(helper)
+
+
+def clean_up():
+    """Remove helper scenes whose own scene has been deleted."""
+    for scene in [scene for scene in bpy.data.scenes if scene.get(MARK) == "helper" and not scene.library]:
+        if scene.afterlight.source is None:
+            _remove_helper(scene)
+
+
+def faults(scene):
+    """What is missing from the wiring of an enabled scene, as sentences for people; empty where all is in place."""
+    helper, tree = scene.afterlight.helper, scene.compositing_node_group
+    if helper is None or helper.afterlight.source != scene or helper.render.engine != ENGINE:
+        return ["Afterlight's helper scene was deleted or changed"]
+    if tree is None or not scene.render.use_compositing:
+        return ["Compositing is switched off, so the light can't be added to the picture"]
+    if [layer.name for layer in helper.view_layers] != [layer.name for layer in scene.view_layers]:
+        return ["View layers were added, removed or renamed since Indirect Light was ticked"]
+    pictures = nodes.pictures(tree, scene)
+    if not pictures:
+        return [f'The compositor has no Render Layers node of "{scene.name}", so there is no picture to add light to']
+    found = []
+    dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
+    if dark:
+        found.append(f"The compositor uses {', '.join(dark)} without the indirect light: a node of Afterlight was "
+                     "deleted, or a Render Layers node is new")
+    if not any(nodes.shows(node, helper) for node in tree.nodes):
+        found.append("Afterlight's Render Layers node was deleted from the compositor")
+    elif any(nodes.role(node) == "add" and not nodes.source(node, nodes.B) for node in nodes.all_nodes(tree)):
+        found.append("The indirect light is no longer linked to the node that adds it")
+    if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in PASSES)
+           for layer, mirror in zip(scene.view_layers, helper.view_layers)):
+        found.append("A pass that Afterlight reads was switched off")
+    return found
+
+
+def _own_helper(scene):
+    helper = scene.afterlight.helper
+    if helper is None or helper.afterlight.source not in (scene, None):
+        helper = bpy.data.scenes.new(HELPER_NAME.format(scene.name)[:250])
+        helper[MARK] = "helper"
+        # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
+        helper.camera = bpy.data.objects.new(helper.name, bpy.data.cameras.new(helper.name))
+        helper.collection.objects.link(helper.camera)
+        helper.eevee.taa_render_samples = 1  # what is rendered in its place where the extension is missing
+        scene.afterlight.helper = helper
+    helper.afterlight.source = scene
+    helper.render.engine = ENGINE
+    return helper
+
+
+def _remove_helper(helper):
+    for camera in [each for each in helper.collection.objects if each.type == "CAMERA"]:
+        bpy.data.cameras.remove(camera.data)  # and the object with it
+    bpy.data.scenes.remove(helper)
+
+
+def _mirror_layers(scene, helper):
+    """Give `helper` the view layers of `scene`, name by name in the same order. Returns whether it had to."""
+    names = [layer.name for layer in scene.view_layers]
+    if [layer.name for layer in helper.view_layers] == names:
+        return False
+    while len(helper.view_layers) > len(names):
+        helper.view_layers.remove(helper.view_layers[-1])
+    for index, layer in enumerate(helper.view_layers):
+        layer.name = f"\x7f{index}"  # names are unique: make room for those that only change places
+    for layer, name in zip(helper.view_layers, names):
+        layer.name = name
+    for name in names[len(helper.view_layers):]:
+        helper.view_layers.new(name)
+    return True
+
+
+def _owner(tree, scene):
+    """Whether no other enabled scene has this tree in its compositor."""
+    return not any(tree in nodes.trees(other.compositing_node_group)
+                   for other in bpy.data.scenes if other != scene and other.afterlight.enabled)
+
+
+def _tree_in_use(scene):
+    """The compositor tree to wire: the user's own where it is in use, else one of ours."""
+    settings, render = scene.afterlight, scene.render
+    tree = scene.compositing_node_group
+    if tree is not None and settings.own_tree not in (None, tree) and all(map(nodes.role, tree.nodes)):
+        settings.own_tree = tree  # a copied scene has a copy of the tree we made for its original
+    if tree is not None and (render.use_compositing or tree == settings.own_tree):
+        render.use_compositing = True
+        return tree
+    if not render.use_compositing:
+        # A tree that is switched off must not come to life because Afterlight needs the compositor.
+        settings.compositing_was_off, settings.set_aside = True, tree
+        render.use_compositing = True
+    settings.own_tree = scene.compositing_node_group = _new_tree(scene)
+    return settings.own_tree
+
+
+def _new_tree(scene):
+    """The tree that does what Blender does without one: the first view layer's image is the picture."""
+    tree = bpy.data.node_groups.new(TREE_NAME, "CompositorNodeTree")
+    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+    picture, output = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("NodeGroupOutput")
+    picture[MARK] = output[MARK] = "plain"
+    picture.scene = scene
+    picture.layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0]).name
+    output.location = (600, 0)
+    tree.links.new(picture.outputs["Image"], output.inputs["Image"])
+    return tree
+
+
+def _restore_tree(scene):
+    settings, own = scene.afterlight, scene.afterlight.own_tree
+    shared = any(other != scene and other.compositing_node_group == own for other in bpy.data.scenes)
+    if own is not None and not shared and all(map(nodes.role, own.nodes)):
+        if scene.compositing_node_group == own:
+            scene.compositing_node_group = settings.set_aside
+            if settings.compositing_was_off:
+                scene.render.use_compositing = False
+        bpy.data.node_groups.remove(own)
+    elif own is not None:  # the user has built on it: from now on it is theirs
+        for node in own.nodes:
+            if nodes.role(node) == "plain":
+                del node[MARK]
+    settings.own_tree = settings.set_aside = None
+    settings.compositing_was_off = False
+
+
+def _switch_passes_on(layer):
+    off = [switch for _, switch, _, _ in PASSES if not getattr(layer, switch)]
+    if off:
+        layer[MARK] = sorted({*layer.get(MARK, ()), *off})
+        for switch in off:
+            setattr(layer, switch, True)
+
+
+def _switch_passes_off(scene, layer):
+    """Switch off what we switched on, but for passes that the user's own nodes have come to use."""
+    ours = list(layer.get(MARK, ()))
+    if MARK in layer:
+        del layer[MARK]
+    used = {output.name for node in nodes.pictures(scene.compositing_node_group, scene) if node.layer == layer.name
+            for output in node.outputs if output.is_linked}
+    for _, switch, name, _ in PASSES:
+        if switch in ours and name not in used:
+            setattr(layer, switch, False)
+
+
+def _assign(data, name, value):
+    if getattr(data, name) == value:
+        return False
+    setattr(data, name, value)
+    return True

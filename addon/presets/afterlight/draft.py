@@ -1,0 +1,6 @@
+import bpy
+settings = bpy.context.scene.afterlight
+
+settings.start = "QUARTER"
+settings.samples = 64
+settings.radius = 8

@@ -1,0 +1,6 @@
+import bpy
+settings = bpy.context.scene.afterlight
+
+settings.start = "HALF"
+settings.samples = 256
+settings.radius = 8

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one table of parameters: Blender's properties, the uniforms and the tooltips all come from it."""
+
+from dataclasses import dataclass, field
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from . import light
+from .pipeline import status
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One setting that a person can change. `options` go to Blender's property as they are."""
+
+    name: str
+    kind: callable
+    label: str
+    tooltip: str
+    options: dict = field(default_factory=dict)
+
+    def blender_property(self):
+        return self.kind(name=self.label, description=self.tooltip, **self.options)
+
+
+START = {"FULL": 1, "HALF": 2, "QUARTER": 4}
+
+PARAMETERS = (
+    Parameter(
+        "strength", FloatProperty, "Strength",
+        "Scales the indirect light in the picture. 1 is what the light really does; it is a factor on linear light, "
+        "so exposure and view transform do not change its meaning. Costs nothing",
+        {"default": 1.0, "min": 0.0, "soft_max": 2.0, "max": 100.0, "precision": 3, "step": 1}),
+    Parameter(
+        "start", EnumProperty, "Start Resolution",
+        "Finest resolution at which light is gathered. Each step up costs four times as much and sharpens the light "
+        "near edges and contacts; it does not change how bright the light is",
+        {"default": "QUARTER", "items": (
+            ("QUARTER", "Quarter", "One texel for 4 x 4 pixels: the fastest, softest near contacts", 0),
+            ("HALF", "Half", "One texel for 2 x 2 pixels: four times the cost of Quarter", 1),
+            ("FULL", "Full", "One texel a pixel: sixteen times the cost of Quarter", 2))}),
+    Parameter(
+        "samples", IntProperty, "Samples",
+        "Random samples of each texel at each level. Time grows in proportion, noise falls with the square root. Where "
+        "the radius holds fewer texels than this, each is visited once and there is no noise at all",
+        {"default": 64, "min": 16, "max": 1024, "soft_min": 16, "soft_max": 1024}),
+    Parameter(
+        "radius", IntProperty, "Radius",
+        "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact "
+        "sum over all pixels, but the same samples are spread over more texels and the light gets noisier",
+        {"default": 8, "min": 2, "max": 64, "soft_min": 4, "soft_max": 32, "subtype": "PIXEL"}),
+    Parameter(
+        "seed", IntProperty, "Seed",
+        "Pattern of the random samples. The same seed gives the same picture, bit for bit",
+        {"default": 0, "min": 0, "max": 2**31 - 1}),
+    Parameter(
+        "use_animated_seed", BoolProperty, "Animate Seed",
+        "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves",
+        {"default": False}),
+)
+
+
+def light_settings(settings, frame):
+    """The user's settings as the algorithm takes them. `frame` is the frame number, for an animated seed."""
+    return light.Settings(
+        start=START[settings.start], samples=settings.samples, radius=settings.radius, strength=settings.strength,
+        seed=settings.seed + frame * 7919 if settings.use_animated_seed else settings.seed)
+
+
+def _switch(settings, _context):
+    from .pipeline import wiring  # it needs the settings registered
+    scene = settings.id_data
+    if scene.library is None:
+        (wiring.connect if settings.enabled else wiring.disconnect)(scene)
+
+
+class AfterlightSettings(bpy.types.PropertyGroup):
+    """`scene.afterlight`. What the user sets is in PARAMETERS; the rest is what the wiring must remember."""
+
+    enabled: BoolProperty(
+        name="Indirect Light", options=set(), update=_switch,
+        description="Add one bounce of indirect light to EEVEE's renders, gathered from the passes of the finished "
+                    "frame. To fade it in an animation, put keyframes on Strength")
+    report: StringProperty(
+        name="Last Render", get=lambda settings: status.message(settings.id_data),
+        description="What kept the last render of this scene from being lit, empty where nothing did")
+
+    helper: PointerProperty(
+        type=bpy.types.Scene, options={"HIDDEN"},
+        description="The scene through which Blender calls Afterlight while it renders this one")
+    source: PointerProperty(
+        type=bpy.types.Scene, options={"HIDDEN"}, description="On a helper scene: the scene whose light it gathers")
+    own_tree: PointerProperty(
+        type=bpy.types.NodeTree, options={"HIDDEN"},
+        description="The compositor tree Afterlight made where the scene had none in use")
+    set_aside: PointerProperty(
+        type=bpy.types.NodeTree, options={"HIDDEN"},
+        description="The user's own compositor tree, while compositing was switched off for it")
+    compositing_was_off: BoolProperty(options={"HIDDEN"})
+
+
+AfterlightSettings.__annotations__.update(
+    (parameter.name, parameter.blender_property()) for parameter in PARAMETERS)
+
+
+def register():
+    bpy.utils.register_class(AfterlightSettings)
+    bpy.types.Scene.afterlight = PointerProperty(type=AfterlightSettings)
+
+
+def unregister():
+    del bpy.types.Scene.afterlight
+    bpy.utils.unregister_class(AfterlightSettings)
