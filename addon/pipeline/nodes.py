@@ -50,8 +50,21 @@ def goes_dark(node):
     return any(role(link.to_node) != "add" for link in node.outputs["Image"].links)
 
 
+def lost_image(tree, helper):
+    """View layers whose adding node is gone together with the links it had: nobody uses their image any more."""
+    found = []
+    for light in [node for node in tree.nodes if shows(node, helper) and not node.outputs[PASS].is_linked]:
+        images = [picture.outputs["Image"] for picture in tree.nodes if _same_layer(picture, light)]
+        if images and not any(image.is_linked for image in images):
+            found.append(light.layer)
+    return found
+
+
 def splice(tree, picture, helper):
     """Put the light of `helper` between the image of a Render Layers node and whatever uses it."""
+    for link in picture.outputs["Image"].links:
+        if role(link.to_node) == "add" and not source(link.to_node, B):
+            tree.links.new(_light_for(tree, picture, helper).outputs[PASS], socket(link.to_node.inputs, B))
     links = [link for link in picture.outputs["Image"].links if role(link.to_node) != "add"]
     if not links:
         return
@@ -61,7 +74,7 @@ def splice(tree, picture, helper):
     add.data_type, add.blend_type, add.clamp_result = "RGBA", "ADD", False
     socket(add.inputs, "Factor_Float").default_value = 1.0
     socket(add.inputs, B).default_value = (0.0, 0.0, 0.0, 1.0)
-    light = light_node(tree, helper, picture.layer)
+    light = _light_for(tree, picture, helper)
     for user, is_muted in users:
         tree.links.new(socket(add.outputs, RESULT), user).is_muted = is_muted
     tree.links.new(picture.outputs["Image"], socket(add.inputs, A))
@@ -123,6 +136,18 @@ def source(node, identifier):
 
 def socket(sockets, identifier):
     return next(each for each in sockets if each.identifier == identifier)
+
+
+def _light_for(tree, picture, helper):
+    """A light node for the layer of `picture`: one that lost its adding node, or a new one."""
+    idle = (node for node in tree.nodes if shows(node, helper) and node.layer == picture.layer
+            and not node.outputs[PASS].is_linked)
+    return next(idle, None) or light_node(tree, helper, picture.layer)
+
+
+def _same_layer(picture, light):
+    return (picture.bl_idname == light.bl_idname and picture.layer == light.layer
+            and picture.scene == light.scene.afterlight.source)
 
 
 def _new(tree, idname, kind):

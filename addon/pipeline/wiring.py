@@ -86,6 +86,10 @@ def faults(scene):
     if not pictures:
         return [f'The compositor has no Render Layers node of "{scene.name}", so there is no picture to add light to']
     found = []
+    lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, helper)]
+    if lost:
+        found.append(f"The node that adds the light to {', '.join(lost)} was deleted, and the links of the image with "
+                     "it. Link the Image of its Render Layers node again, then press Repair")
     dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
     if dark:
         found.append(f"The compositor uses {', '.join(dark)} without the indirect light: a node of Afterlight was "
@@ -151,6 +155,8 @@ def _tree_in_use(scene):
         settings.own_tree = tree  # a copied scene has a copy of the tree we made for its original
     if tree is not None and (render.use_compositing or tree == settings.own_tree):
         render.use_compositing = True
+        if tree == settings.own_tree:
+            _link_image(tree)
         return tree
     if not render.use_compositing:
         # A tree that is switched off must not come to life because Afterlight needs the compositor.
@@ -169,8 +175,17 @@ def _new_tree(scene):
     picture.scene = scene
     picture.layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0]).name
     output.location = (600, 0)
-    tree.links.new(picture.outputs["Image"], output.inputs["Image"])
+    _link_image(tree)
     return tree
+
+
+def _link_image(tree):
+    """In a tree that holds nothing but our nodes, link the image to the output where a deleted node left a gap."""
+    if all(map(nodes.role, tree.nodes)):
+        picture = next((node for node in tree.nodes if "Image" in node.outputs and nodes.role(node) == "plain"), None)
+        for output in [node for node in tree.nodes if node.bl_idname == "NodeGroupOutput"]:
+            if picture and not output.inputs[0].is_linked:
+                tree.links.new(picture.outputs["Image"], output.inputs[0])
 
 
 def _restore_tree(scene):
