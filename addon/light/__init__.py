@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The light itself: one bounce of indirect illumination between the pixels of finished passes, on the GPU.
+
+Knows `gpu` and numpy, and no scene: arrays in, an array out. The way through is pipeline.py, the mathematics
+docs/method.md.
+"""
+
+from .device import GpuUnavailable, release
+from .inputs import Camera, Passes, Settings
+from .pipeline import (Cancelled, Level, composite, gather, gather_indirect, pack, pyramid, upload, upsample)
+
+__all__ = ["Camera", "Cancelled", "GpuUnavailable", "Level", "Passes", "Settings", "composite", "gather",
+           "gather_indirect", "pack", "pyramid", "release", "upload", "upsample"]

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the gather is given: a camera, EEVEE's passes and the settings. Plain numpy, no GPU."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """How pixels see the world. Lens shift, pixel aspect and a render border all live in scale and offset.
+
+    Pixel (i, j), j counted from the bottom row, has the view ray q = offset + scale * (i + 0.5, j + 0.5). Its point
+    at planar depth z (metres, above 0) is (q.x z, q.y z, -z) in perspective and (q.x, q.y, -z) in orthographic.
+
+    rotation: (3, 3) float64, world to view. scale, offset: (2,) float64, in view units at depth 1 (perspective) or
+    metres (orthographic).
+    """
+
+    rotation: np.ndarray
+    scale: np.ndarray
+    offset: np.ndarray
+    orthographic: bool = False
+
+
+@dataclass(eq=False)
+class Passes:
+    """EEVEE's finished passes, rows top first as OpenEXR gives them; every array (H, W) float32, C-contiguous.
+
+    depth: planar, metres; background 1e10 (anything above 1e9, or 0 and below, is no surface). normal: world space.
+    diffuse_color: albedo. diffuse_direct: direct light without the albedo, as radiance of a white surface.
+    emission: radiance. Radiance is in W sr^-1 m^-2, as linear as EEVEE writes it.
+    """
+
+    depth: np.ndarray
+    normal: Triple
+    diffuse_color: Triple
+    diffuse_direct: Triple
+    emission: Triple
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height) in pixels."""
+        height, width = self.depth.shape
+        return width, height
+
+    def channels(self) -> dict[str, Triple]:
+        """The arrays of each pass, depth as a pass of one channel."""
+        passes = {field.name: getattr(self, field.name) for field in fields(self)}
+        return passes | {"depth": (self.depth,)}
+
+    def repair(self) -> dict[str, int]:
+        """Pixels that hold NaN or infinity, by pass; empty for sound passes. Changes nothing: the shaders leave
+        such pixels out as emitters and give them no light, so this is only what a message to people needs.
+
+        Cheap for sound passes: a sum of squares is finite exactly when each of its terms is (a value above 1e19
+        overflows it too, and is then counted properly and found sound).
+        """
+        broken = {}
+        for name, arrays in self.channels().items():
+            if all(np.isfinite(np.vdot(array, array)) for array in arrays):
+                continue
+            count = np.count_nonzero(~np.logical_and.reduce([np.isfinite(array) for array in arrays]))
+            if count:
+                broken[name] = int(count)
+        return broken
+
+
+@dataclass(frozen=True)
+class Settings:
+    """start: pixels along the side of a base texel (1, 2 or 4). samples: per texel at the finest level, doubled at
+    each coarser one; 0, or any number not below the size of the region, takes every texel of it. radius: of the
+    region, in texels, 2 to 140. seed: any integer; the same seed gives the same picture. strength: factor on the
+    result."""
+
+    start: int
+    samples: int
+    radius: int
+    seed: int
+    strength: float

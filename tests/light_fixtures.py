@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the tests of the light share: the package under test, synthetic frames, and one frame that EEVEE renders."""
+
+import importlib
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import bpy  # before gpu, which exists only once bpy is in
+import gpu
+import numpy as np
+import pytest
+
+import reference
+
+BACKGROUND = np.float32(1e10)
+ROTATION_LOOKING_DOWN_MINUS_Z = np.eye(3)
+
+
+@pytest.fixture(scope="session")
+def light(afterlight):
+    """addon.light of the installed extension."""
+    return importlib.import_module(f"{afterlight.__name__}.addon.light")
+
+
+def camera_for(light, width, height, *, fov_x=1.0, shift=(0.0, 0.0), rotation=None, orthographic_width=None):
+    """A Camera with square pixels. fov_x in radians; shift in view units at depth 1; orthographic_width in metres."""
+    half = np.tan(fov_x / 2) if orthographic_width is None else orthographic_width / 2
+    scale = np.array([2 * half / width, 2 * half / width])
+    offset = np.array([-half, -half * height / width]) + np.asarray(shift)
+    rotation = ROTATION_LOOKING_DOWN_MINUS_Z if rotation is None else rotation
+    return light.Camera(rotation=np.asarray(rotation, float), scale=scale, offset=offset,
+                        orthographic=orthographic_width is not None)
+
+
+def passes_from(light, depth, normal, diffuse_color, diffuse_direct, emission):
+    """Passes (rows top first) from arrays (H, W) and (H, W, 3) whose first row is the bottom one."""
+    def split(image):
+        return tuple(np.ascontiguousarray(image[::-1, :, c], np.float32) for c in range(3))
+
+    return light.Passes(np.ascontiguousarray(depth[::-1], np.float32), split(normal), split(diffuse_color),
+                        split(diffuse_direct), split(emission))
+
+
+def random_frame(light, width, height, seed=0, holes=0.1):
+    """A bumpy landscape of random surfels with some background: no symmetry for an error to hide behind."""
+    rng = np.random.default_rng(seed)
+    depth = 3 + rng.uniform(0, 0.5, (height, width)) + np.linspace(0, 1, width)
+    depth[rng.uniform(size=depth.shape) < holes] = BACKGROUND
+    normal = rng.normal(size=(height, width, 3)) * 0.5 + (0, 0, 1)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    color, direct, emission = (rng.uniform(0, 1, (height, width, 3)) for _ in range(3))
+    return passes_from(light, depth, normal, color, direct, emission * (emission > 0.9))
+
+
+def box_frame(light, width, height, *, radiance=None, albedo=0.7):
+    """A camera at the middle of the back of a closed box, 2 x 2 x 4 m, traced exactly.
+
+    radiance: None for a lamp-like falloff on coloured walls, or a constant for a white furnace (then L = radiance)."""
+    camera = camera_for(light, width, height, fov_x=1.6)
+    i, j = np.meshgrid(np.arange(width), np.arange(height))
+    ray = np.stack([camera.offset[0] + camera.scale[0] * (i + .5), camera.offset[1] + camera.scale[1] * (j + .5),
+                    np.full(i.shape, -1.0)], -1)
+    walls = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1]], float)   # outward normals
+    distances = np.array([1, 1, 1, 1, 3.0])
+    slope = ray @ walls.T
+    depth = np.where(slope > 1e-9, distances / np.maximum(slope, 1e-9), np.inf)
+    wall = depth.argmin(-1)
+    depth = depth.min(-1)
+    place, normal = ray * depth[..., None], -walls[wall]
+    color = np.array([[.8, .1, .1], [.1, .8, .1], [.7] * 3, [.7] * 3, [.7] * 3])[wall]
+    to_lamp = np.array([0, 0.8, -1.8]) - place
+    square = (to_lamp ** 2).sum(-1)
+    direct = np.maximum((normal * to_lamp).sum(-1), 0) / square ** 1.5
+    direct = np.repeat(direct[..., None], 3, -1)
+    emission = np.zeros_like(color)
+    if radiance is not None:
+        color, direct, emission = np.full_like(color, albedo), np.zeros_like(color), np.full_like(color, radiance)
+    return passes_from(light, depth, normal, color, direct, emission), camera
+
+
+def build_box_scene(width, height, samples):
+    """A Cornell-like room with two solids and an emissive sign, seen by EEVEE without its own ray tracing."""
+    from mathutils import Euler, Vector
+
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)  # keeps extensions enabled
+    scene = bpy.context.scene
+
+    def material(name, color, emission=0.0):
+        made = bpy.data.materials.new(name)
+        made.use_nodes = True
+        shader = made.node_tree.nodes["Principled BSDF"]
+        shader.inputs["Base Color"].default_value = (*color, 1)
+        shader.inputs["Roughness"].default_value = 1.0
+        shader.inputs["Specular IOR Level"].default_value = 0.0
+        shader.inputs["Emission Color"].default_value = (*color, 1)
+        shader.inputs["Emission Strength"].default_value = emission
+        return made
+
+    def add(name, vertices, faces, made, **where):
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(vertices, [], faces)
+        mesh.materials.append(made)
+        thing = bpy.data.objects.new(name, mesh)
+        for key, value in where.items():
+            setattr(thing, key, value)
+        scene.collection.objects.link(thing)
+
+    corner = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    cube = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    white, red, green = material("White", (.75,) * 3), material("Red", (.7, .06, .05)), material("Green", (.1, .5, .1))
+    for name, made, face in (("Left", red, 0), ("Right", green, 1), ("Back", white, 3), ("Floor", white, 4),
+                             ("Ceiling", white, 5)):
+        add(name, [corner[k] for k in cube[face]], [(0, 1, 2, 3)], made)
+    add("Tall", corner, cube, white, scale=(.28, .28, .6), location=(-.35, .35, -.4), rotation_euler=(0, 0, .35))
+    add("Short", corner, cube, white, scale=(.28, .28, .28), location=(.4, -.3, -.72), rotation_euler=(0, 0, -.3))
+    add("Sign", [(-.3, -.98, .1), (.3, -.98, .1), (.3, -.98, .4), (-.3, -.98, .4)], [(0, 1, 2, 3)],
+        material("Sign", (1, .6, .2), 4.0), location=(0, 1.95, 0))
+
+    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
+    lamp.data.energy, lamp.data.size, lamp.location = 20, .5, (0, 0, .98)
+    scene.collection.objects.link(lamp)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.sensor_width, camera.data.lens = 36, 32
+    camera.location = Vector((0, -3.0, 0.1))
+    camera.rotation_euler = Euler((np.pi / 2 - .03, 0, 0))
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.render.engine = "BLENDER_EEVEE"
+    scene.eevee.taa_render_samples = samples
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    layer = scene.view_layers[0]
+    for flag in ("z", "normal", "diffuse_color", "diffuse_direct", "emit"):
+        setattr(layer, f"use_pass_{flag}", True)
+    return scene
+
+
+@cache
+def rendered_box(light, width=160, height=90, samples=16):
+    """(Passes, Camera) of the box scene as EEVEE renders it."""
+    import OpenEXR
+
+    scene = build_box_scene(width, height, samples)
+    settings = scene.render.image_settings
+    settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
+    with tempfile.TemporaryDirectory() as folder:
+        bpy.ops.render.render()
+        path = str(Path(folder, "box.exr"))
+        bpy.data.images["Render Result"].save_render(path, scene=scene)
+        channels = {name.split(".", 1)[1]: channel.pixels
+                    for part in OpenEXR.File(path, separate_channels=True).parts
+                    for name, channel in part.channels.items() if "." in name}
+    triple = lambda name, axes: tuple(np.ascontiguousarray(channels[f"{name}.{a}"]) for a in axes)
+    passes = light.Passes(np.ascontiguousarray(channels["Depth.Z"]), triple("Normal", "XYZ"),
+                          triple("Diffuse Color", "RGB"), triple("Diffuse Direct", "RGB"),
+                          triple("Emission", "RGB"))
+    camera = scene.camera
+    rotation = np.array(camera.matrix_world.to_3x3().normalized()).T
+    fov = 2 * np.arctan(camera.data.sensor_width / 2 / camera.data.lens)
+    return passes, camera_for(light, width, height, fov_x=fov, rotation=rotation)
+
+
+def level_arrays(level):
+    """A Level on the GPU as a reference.Level."""
+    radiance, place, vector_area = (np.array(image.read(), np.float64)
+                                    for image in (level.radiance, level.place, level.vector_area))
+    return reference.Level(radiance[..., :3], place[..., :3], place[..., 3], vector_area[..., :3])
+
+
+def level_textures(light, level):
+    """A reference.Level as a Level on the GPU."""
+    height, width = level.area.shape
+
+    def texture(*parts):
+        data = np.zeros((height, width, 4), np.float32)
+        channel = 0
+        for part in parts:
+            data[..., channel:channel + part.shape[-1]] = part
+            channel += part.shape[-1]
+        return gpu.types.GPUTexture((width, height), format="RGBA32F",
+                                    data=gpu.types.Buffer("FLOAT", data.size, data.ravel()))
+
+    return light.Level(texture(level.radiance), texture(level.place, level.area[..., None]),
+                       texture(level.vector_area))
+
+
+def in_rows(height, width, surfels):
+    """(place, area, vector_area) images filled row by row from (place, normal, area) triples; the rest is empty."""
+    flat = np.zeros((height * width, 7))
+    for row, (place, normal, area) in zip(flat, surfels):
+        row[:3], row[3], row[4:] = place, area, area * np.asarray(normal)
+    image = flat.reshape(height, width, 7)
+    return image[..., :3], image[..., 3], image[..., 4:]
