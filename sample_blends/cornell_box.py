@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Cornell box: red and green walls, two white blocks, one light in the ceiling.
 
-Widened from the classic's square to 16:9, so that every wall that bounces light is in the frame."""
+Widened from the classic's square to 16:9, so that all of every wall that bounces light is in the frame."""
 
 from parts import aim, box, camera, diffuse, glowing, light_data, place, quad, render_settings
 
-WIDTH, DEPTH, HEIGHT = 4.6, 3.0, 2.75
+WIDTH, DEPTH, HEIGHT = 4.9, 3.0, 2.75
 
 
 def build(scene):
@@ -29,4 +29,4 @@ def build(scene):
     panel = [(-0.6, 1.05, z - 0.01), (-0.6, 1.95, z - 0.01), (0.6, 1.95, z - 0.01), (0.6, 1.05, z - 0.01)]
     quad("Light panel", glowing("Light panel", (1, 0.85, 0.65), 3), panel)
 
-    camera(scene, (0, -2.55, HEIGHT / 2), (0, DEPTH, HEIGHT / 2), 24)
+    camera(scene, (0, -3.27, HEIGHT / 2), (0, DEPTH, HEIGHT / 2), 24)

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A street corner at night under a shining sign. EEVEE takes no light from emission: all the sign gives is the bounce."""
 
-from math import cos, pi, sin
-
 import bpy
-import numpy as np
 
 from parts import aim, box, camera, diffuse, glowing, light_data, place, render_settings, sky
 
@@ -28,7 +25,7 @@ def _street():
     box("Side wall", brick, (-3.7, -3, 0), (-3, 4, 4.6))
     box("Right house", brick, (3.6, 1.4, 0), (6.5, 4.2, 4.6))
     box("Ledge", plaster, (-3, 3.86, 3.55), (3.6, 4, 3.68), bevel=0.02)
-    # Paving stones of one mesh: what is wet-looking about them is only their colour.
+    # Paving stones of one mesh, dark as if wet.
     stones = box("Paving stone", pavement, (0, 0, -0.1), (0.88, 0.58, 0.02), bevel=0.012)
     stones.location.x, stones.location.y = -2.52, 0.0
     for axis, (count, offset) in enumerate(((7, 0.9), (8, 0.6))):
@@ -49,29 +46,35 @@ def _street():
 
 
 def _signs():
-    text = bpy.data.curves.new("Sign", "FONT")
-    text.body, text.size, text.extrude = "AFTERLIGHT", 0.80, 0.02
+    red = glowing("Red glass", (1, 0.012, 0.02), 9)
+    teal = glowing("Teal glass", (0.03, 0.55, 0.75), 7)
+    dark = diffuse("Sign frame", (0.05, 0.05, 0.06))
+    _light_box("Sign", red, dark, (-2.15, 2.30), (2.75, 3.18), 3.70, 3.99)
+    _letters("AFTERLIGHT", 0.80, glowing("Letters", (1, 0.75, 0.45), 6), (0.3, 3.73, 2.74))
+    _light_box("Strip", teal, dark, (-2.15, 1.99), (2.75, 2.10), 3.70, 3.99)
+    # Juts out over the door, so that its front lights the wall it hangs on.
+    _light_box("Door sign", teal, dark, (-2.82, 2.42), (-2.02, 3.10), 2.70, 2.86)
+    _letters("OPEN", 0.27, dark, (-2.42, 2.73, 2.76))
+    box("Door sign arm", dark, (-3, 2.75, 2.74), (-2.82, 2.81, 2.80))
+
+
+def _light_box(name, glass, frame, low, high, front, back, rim=0.09):
+    """A box that faces -y with shining glass inside a dark rim; low and high are (x, z) of the glass."""
+    (left, bottom), (right, top) = low, high
+    box(f"{name} glass", glass, (left, front + 0.04, bottom), (right, back - 0.02, top))
+    box(f"{name} back", frame, (left - rim, back - 0.02, bottom - rim), (right + rim, back, top + rim))
+    for edge, (x0, x1, z0, z1) in {
+        "left": (left - rim, left, bottom - rim, top + rim), "right": (right, right + rim, bottom - rim, top + rim),
+        "bottom": (left, right, bottom - rim, bottom), "top": (left, right, top, top + rim),
+    }.items():
+        box(f"{name} rim, {edge}", frame, (x0, front, z0), (x1, back - 0.02, z1))
+
+
+def _letters(body, size, material, location):
+    text = bpy.data.curves.new(body.title(), "FONT")
+    text.body, text.size, text.extrude = body, size, 0.005
     text.align_x, text.align_y, text.space_character = "CENTER", "CENTER", 1.06
-    place("Sign", text, glowing("Letters", (1, 0.75, 0.45), 6), (0.3, 3.72, 2.74), (90, 0, 0))
-    box("Sign board", glowing("Sign board", (1, 0.012, 0.02), 9), (-2.15, 3.76, 2.30), (2.75, 3.9, 3.18))
-    box("Sign frame", diffuse("Sign frame", (0.05, 0.05, 0.06)), (-2.21, 3.80, 2.24), (2.81, 3.99, 3.24), bevel=0.02)
-    teal = glowing("Tubes", (0.04, 0.62, 0.85), 11)
-    _tube("Line", teal, [(-2.15, 3.76, 2.08), (2.75, 3.76, 2.08)])
-    # An arrow beside the door, on the side wall.
-    turn = np.linspace(-0.5, 1.0, 13) * pi
-    hook = [(-2.86, 2.95 + 0.35 * cos(a), 2.55 + 0.35 * sin(a)) for a in turn]
-    _tube("Arrow", teal, hook + [(-2.86, 2.6, 1.9)])
-    _tube("Arrow head", teal, [(-2.86, 2.78, 2.1), (-2.86, 2.6, 1.88), (-2.86, 2.42, 2.1)])
-
-
-def _tube(name, material, points, radius=0.03):
-    curve = bpy.data.curves.new(name, "CURVE")
-    curve.dimensions, curve.bevel_depth, curve.bevel_resolution, curve.use_fill_caps = "3D", radius, 3, True
-    spline = curve.splines.new("POLY")
-    spline.points.add(len(points) - 1)
-    for point, place_ in zip(spline.points, points):
-        point.co = (*place_, 1)
-    return place(name, curve, material)
+    place(text.name, text, material, location, (90, 0, 0))
 
 
 def _things():

@@ -11,16 +11,17 @@ from parts import box, camera, diffuse, glowing, light_data, mesh, place, render
 PILLARS, LANTERNS = 16, 32
 AISLE, SPACING = 1.9, 2.3                  # pillars stand at x = -AISLE and +AISLE, SPACING apart along y
 HALF_WIDTH, LENGTH, HEIGHT = 3.6, 19.5, 4.4
-RADIUS, WINDING = 0.32, 0.52               # of a pillar, and of the lanterns around it
+RADIUS, WINDING = 0.32, 0.45               # of a pillar, and of the lanterns around it
 
 
 def build(scene):
-    render_settings(scene, exposure=-0.3)
-    # Every light reaches as far as this says: at a quarter of it the frame takes several times as long.
-    scene.eevee.light_threshold = 0.002
+    render_settings(scene, exposure=0.3)
+    # Blender's own default: each light ends where it is dim, and what lies beyond is left to the bounce. It is
+    # also what keeps the frame quick: at a twentieth of it every pixel sees every light.
+    scene.eevee.light_threshold = 0.01
     _hall()
     pillar = _pillar_mesh()
-    stone = diffuse("Pillar stone", (0.60, 0.58, 0.55))
+    stone = diffuse("Pillar stone", (0.74, 0.72, 0.68))
     bulbs = _bulb_points()
     for number in range(PILLARS):
         side, row = 2 * (number % 2) - 1, number // 2
@@ -34,9 +35,9 @@ def build(scene):
 
 
 def _hall():
-    wall = diffuse("Hall wall", (0.38, 0.36, 0.36))
+    wall = diffuse("Hall wall", (0.66, 0.64, 0.62))
     x, y, z = HALF_WIDTH, LENGTH, HEIGHT
-    box("Floor", diffuse("Hall floor", (0.30, 0.29, 0.28)), (-x, -4, -0.2), (x, y, 0))
+    box("Floor", diffuse("Hall floor", (0.52, 0.50, 0.48)), (-x, -4, -0.2), (x, y, 0))
     box("Ceiling", wall, (-x, -4, z), (x, y, z + 0.2))
     box("Left wall", wall, (-x - 0.2, -4, 0), (-x, y, z))
     box("Right wall", wall, (x, -4, 0), (x + 0.2, y, z))
@@ -71,7 +72,7 @@ def _lanterns(number, side, row, foot, points):
     hue = (0.98 + 0.022 * row) % 1 if side < 0 else 0.48 + 0.04 * row
     color = hsv_to_rgb(hue, 0.85, 1)
     # Without shadows: 512 point lights are 3072 shadow maps, which no software GPU draws in reasonable time.
-    light = light_data("POINT", f"Lantern {number + 1}", color, 2.2, shadow_soft_size=0.04, use_shadow=False)
+    light = light_data("POINT", f"Lantern {number + 1}", color, 2.6, shadow_soft_size=0.04, use_shadow=False)
     for point in points:
         place("Lantern", light, None, np.add(foot, point))
     place("Bulbs", _octahedra(f"Bulbs {number + 1}", points, 0.028), glowing(f"Bulb {number + 1}", color, 6), foot)

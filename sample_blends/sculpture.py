@@ -96,5 +96,5 @@ def _afternoon(width, height):
     color = np.where(up > 0, zenith * (1 - haze) + horizon * haze, ground)
     toward = way @ (SUN / np.linalg.norm(SUN))
     color = color + np.array([1.0, 0.8, 0.5]) * 0.6 * np.exp((toward[..., None] - 1) * 30)
-    color = np.where(np.arccos(np.clip(toward, -1, 1))[..., None] < SUN_RADIUS, np.array([1.0, 0.90, 0.74]) * 1900, color)
-    return np.concatenate([color * 0.5, np.ones((height, width, 1))], axis=-1).astype(np.float32)
+    color = np.where(np.arccos(np.clip(toward, -1, 1))[..., None] < SUN_RADIUS, np.array([1.0, 0.90, 0.74]) * 3600, color)
+    return np.concatenate([color * 0.28, np.ones((height, width, 1))], axis=-1).astype(np.float32)

@@ -9,7 +9,7 @@ WINDOW = (2.3, 4.2)                        # from and to along y
 
 
 def build(scene):
-    render_settings(scene, exposure=0.9)
+    render_settings(scene, exposure=1.2)
     _shell()
     _furniture()
     _sun_and_sky()
