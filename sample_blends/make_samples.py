@@ -30,6 +30,7 @@ def make(name, folder, plain):
     if not plain:
         session.tick(scene)
     path = folder / f"{name}.blend"
+    path.unlink(missing_ok=True)            # or Blender keeps it as a .blend1
     bpy.ops.wm.save_as_mainfile(filepath=str(path), check_existing=False, compress=True)
     if path.stat().st_size > LARGEST:
         sys.exit(f"{path} has {path.stat().st_size} bytes; at most {LARGEST} are wanted.")

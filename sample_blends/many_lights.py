@@ -16,8 +16,8 @@ RADIUS, WINDING = 0.32, 0.45               # of a pillar, and of the lanterns ar
 
 def build(scene):
     render_settings(scene, exposure=0.3)
-    # Blender's own default: each light ends where it is dim, and what lies beyond is left to the bounce. It is
-    # also what keeps the frame quick: at a twentieth of it every pixel sees every light.
+    # Blender's own default: each light ends where it is dim, which keeps the frame quick, and leaves to the bounce
+    # what lies beyond.
     scene.eevee.light_threshold = 0.01
     _hall()
     pillar = _pillar_mesh()
