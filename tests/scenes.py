@@ -46,7 +46,7 @@ def wall(material, location, rotation):
 
 
 def put(data, location=(0, 0, 0), rotation=(0, 0, 0)):
-    thing = bpy.data.objects.new(data.name, data)
+    thing = bpy.data.objects.new(data.name if data else "Empty", data)
     thing.location, thing.rotation_euler = location, [radians(angle) for angle in rotation]
     bpy.context.scene.collection.objects.link(thing)
     return thing
@@ -79,8 +79,12 @@ def simple_tree(scene):
 
 
 def nested_tree(scene):
-    """The Render Layers node sits in a group within a group; the outer tree only has the output."""
-    tree, outer, inner = compositor(scene), None, None
+    """The picture comes from a Render Layers node in a group within a group; the tree itself only views one.
+
+    Blender renders the scene only if there is a Render Layers node at the top level as well."""
+    tree = compositor(scene)
+    viewer = tree.nodes.new("CompositorNodeViewer")
+    tree.links.new(layers_node(tree, scene).outputs["Image"], viewer.inputs["Image"])
     inner = bpy.data.node_groups.new("Inner", "CompositorNodeTree")
     outer = bpy.data.node_groups.new("Outer", "CompositorNodeTree")
     for group in (inner, outer):

@@ -120,15 +120,11 @@ class AfterlightEngine(bpy.types.RenderEngine):
         return self.test_break()
 
     def _hand_back(self, shot, picture):
-        """Indirect light into the pass; the same into Combined, so that the layer's image is not just black."""
+        """The indirect light into our pass of the layer; black where there is none."""
         *_, width, height = shot.window
         result = self.begin_result(0, 0, width, height, layer=shot.layer)
-        for render_pass in result.layers[0].passes:
-            size = result.resolution_x * result.resolution_y, render_pass.channels
-            pixels = np.zeros(size, np.float32)
-            if picture is not None:
-                pixels[:] = picture.reshape(-1, 4)[:, :render_pass.channels]
-            render_pass.rect.foreach_set(pixels.reshape(-1))
+        pixels = np.zeros((height, width, 3), np.float32) if picture is None else picture[..., :3]
+        result.layers[0].passes[PASS].rect.foreach_set(pixels.ravel())
         self.end_result(result)
 
 

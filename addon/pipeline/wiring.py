@@ -85,6 +85,9 @@ def faults(scene):
     pictures = nodes.pictures(tree, scene)
     if not pictures:
         return [f'The compositor has no Render Layers node of "{scene.name}", so there is no picture to add light to']
+    if not any(picture.id_data == tree for picture in pictures):
+        return ["All Render Layers nodes of this scene are inside node groups, and then Blender does not render the "
+                "scene. Add one at the top level of the compositor; it need not be linked"]
     found = []
     lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, helper)]
     if lost:
