@@ -66,7 +66,7 @@ def form_factor(receiver, normal, place, area, vector_area):
     path = place - receiver
     square = dot(path, path)
     cosines = np.maximum(dot(normal, path), 0) * np.maximum(-dot(vector_area, path), 0)
-    return np.where(cosines > 0, cosines / np.maximum(square, 1e-300) / (np.pi * square + area), 0)
+    return np.where(cosines > 0, cosines, 0) / np.maximum(square * (np.pi * square + area), 1e-300)
 
 
 def pack(passes, camera, start):
@@ -112,15 +112,24 @@ def pyramid(base, radius):
     return levels
 
 
+def hole(radius):
+    """Squared radius of a ring's hole: four times its texels come nearest to the texels of the disk."""
+    def texels(largest):
+        return sum(x * x + y * y <= largest for x in range(-radius, radius + 1) for y in range(-radius, radius + 1))
+
+    return min(range(radius * radius), key=lambda square: abs(4 * texels(square) - texels(radius * radius - 1)))
+
+
 def gather(level, finest, radius):
     """(H, W, 4): irradiance and the sum of form factors over the whole disk or ring."""
     height, width = level.area.shape
+    inner = 0 if finest else hole(radius)
     normal = direction(level.vector_area)
     result = np.zeros((height, width, 4))
     for dy in range(1 - radius, radius):
         for dx in range(1 - radius, radius):
             square = dx * dx + dy * dy
-            if square >= radius * radius or (square == 0 if finest else 4 * square < radius * radius):
+            if square >= radius * radius or square <= inner:
                 continue
             here = (slice(max(0, -dy), min(height, height - dy)), slice(max(0, -dx), min(width, width - dx)))
             there = (slice(max(0, dy), min(height, height + dy)), slice(max(0, dx), min(width, width + dx)))

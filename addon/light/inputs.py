@@ -5,6 +5,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from .region import LARGEST_RADIUS
+
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -73,10 +75,18 @@ class Settings:
     """start: pixels along the side of a base texel (1, 2 or 4). samples: per texel at the finest level, doubled at
     each coarser one; 0, or any number not below the size of the region, takes every texel of it. radius: of the
     region, in texels, 2 to 140. seed: any integer; the same seed gives the same picture. strength: factor on the
-    result."""
+    result. Raises ValueError for anything else."""
 
     start: int
     samples: int
     radius: int
     seed: int
     strength: float
+
+    def __post_init__(self):
+        if self.start not in (1, 2, 4):
+            raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {self.start}")
+        if self.samples < 0:
+            raise ValueError(f"The number of samples must not be negative: {self.samples}")
+        if not 2 <= self.radius <= LARGEST_RADIUS:
+            raise ValueError(f"The radius must be 2 to {LARGEST_RADIUS} texels, not {self.radius}")

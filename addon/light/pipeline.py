@@ -119,10 +119,8 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
     progress(stage, fraction): called between stages and bands with the share of all work done; a true answer raises
     Cancelled. timings: filled with seconds for upload, pyramid (pack included), gather, upsample (composite
     included) and read_back; asking for them waits for the GPU after every stage.
-    Raises GpuUnavailable where the GPU cannot do it, ValueError for settings out of range.
+    Raises GpuUnavailable where the GPU cannot do it.
     """
-    if settings.start not in (1, 2, 4):
-        raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {settings.start}")
     lap = _stopwatch(timings)
 
     def report(stage, fraction):
@@ -141,12 +139,13 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
     lap("pyramid", levels[-1].place)
 
     texels = [width * height for width, height in (level.size for level in levels)]
-    total = None
+    done, total = 0, None
     while levels:
         level, index = levels.pop(), len(levels)
-        done, share = 1 - sum(texels[:index + 1]) / sum(texels), texels[index] / sum(texels)
-        report("gather", done)
-        irradiance = gather(level, index, settings, lambda rows: report("gather", done + share * rows))
+        report("gather", done / sum(texels))
+        irradiance = gather(level, index, settings,
+                            lambda rows: report("gather", (done + rows * texels[index]) / sum(texels)))
+        done += texels[index]
         lap("gather", irradiance)
         total = irradiance if total is None else upsample(level, irradiance, coarser, total)
         lap("upsample", total)
