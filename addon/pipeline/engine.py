@@ -37,12 +37,16 @@ class AfterlightEngine(bpy.types.RenderEngine):
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
     bl_use_gpu_context = True
 
+    idle = False  # render nothing: handlers.py has a use for an empty render
+
     def update_render_passes(self, scene, layer):
         self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
 
     def update(self, data, depsgraph):
         """Look at the scene: Blender holds the interface off while this runs, so it is short."""
         self.shot = None
+        if self.idle:
+            return
         source = depsgraph.scene.afterlight.source
         if source is None:
             self.report({"ERROR"}, "Afterlight: this engine works for its helper scenes only. Set Render Engine to "

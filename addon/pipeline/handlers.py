@@ -4,7 +4,8 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, status, wiring
+from . import checks, passes, status, wiring
+from .engine import AfterlightEngine
 
 
 def _lit_scenes():
@@ -38,10 +39,22 @@ def before_render(scene, *_):
     status.begin(scene)
     if bpy.app.background and scene.library is None:
         wiring.connect(scene)
+        _ensure_render_result(scene.afterlight.helper)
     for finding in checks.findings(scene):
         if finding.fatal:
             status.fail(scene, finding.text)
         print(f"Afterlight: {finding.text}")
+
+
+def _ensure_render_result(helper):
+    """Make the image through which Python can save passes. F12 makes it by itself; `blender -b -f` and `-a` do not,
+    and only Blender's render operator can: here with nothing to render."""
+    if passes.render_result() is None:
+        AfterlightEngine.idle = True
+        try:
+            bpy.ops.render.render(scene=helper.name)
+        finally:
+            AfterlightEngine.idle = False
 
 
 HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", follow_all), ("undo_post", follow_all),

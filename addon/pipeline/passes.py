@@ -31,13 +31,21 @@ def save(scene):
             "and restart Blender")
     try:
         with _multilayer_exr(scene.render.image_settings):
-            bpy.data.images["Render Result"].save_render(path, scene=scene)
-    except (RuntimeError, KeyError, OSError) as error:
+            render_result().save_render(path, scene=scene)
+    except (RuntimeError, OSError) as error:
         discard(path)
+        if "does not have any image data" in str(error):
+            raise Problem(f'There is no render of "{scene.name}" to light. Render that one, not the scene that serves '
+                          "to light it") from error
         raise Problem(f"The passes could not be written to {bpy.app.tempdir} ({_text(error)}). {cure}") from error
     if not os.path.exists(path):
         raise Problem(f"The passes could not be written to {bpy.app.tempdir}. {cure}")
     return path
+
+
+def render_result():
+    """Blender's image that stands for finished renders, or None: `blender -b` has none before its first frame."""
+    return next((image for image in bpy.data.images if image.type == "RENDER_RESULT"), None)
 
 
 def load(path, layer, window):

@@ -115,6 +115,7 @@ def _own_helper(scene):
         # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
         helper.camera = bpy.data.objects.new(helper.name, bpy.data.cameras.new(helper.name))
         helper.collection.objects.link(helper.camera)
+        helper.render.resolution_x = helper.render.resolution_y = 4  # it is always rendered at its source's
         helper.eevee.taa_render_samples = 1  # what is rendered in its place where the extension is missing
         scene.afterlight.helper = helper
     helper.afterlight.source = scene

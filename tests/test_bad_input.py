@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What cannot be lit: one clear message, the plain picture where there is one, settings as they were, no traceback."""
+
+import os
+import shutil
+import sys
+
+import bpy
+import numpy as np
+import pytest
+from scenes import box, differences, read_rgb, render, written_down
+
+
+@pytest.fixture
+def scene(fresh):
+    scene = box(fresh, samples=1)
+    scene.afterlight.enabled = True
+    return scene
+
+
+@pytest.fixture(scope="module")
+def plain(afterlight, tmp_path_factory):
+    """The box by EEVEE alone."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return read_rgb(render(box(bpy.context.scene, samples=1), tmp_path_factory.mktemp("plain") / "plain.exr"))
+
+
+@pytest.fixture
+def refuse(scene, tmp_path, capfd):
+    """Render; assert that the picture comes without light, with a message that holds `words`, and all is as before."""
+    def check(*words, picture=None):
+        scene.render.filepath = str(tmp_path / "picture.exr")
+        scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
+        scene.render.image_settings.exr_codec = "NONE"
+        before = written_down()
+        before.pop("images")
+        capfd.readouterr()
+        try:
+            rendered = read_rgb(render(scene, tmp_path / "picture.exr"))
+        except RuntimeError as error:  # Blender's own refusal
+            rendered = None
+            assert "Traceback" not in str(error)
+        after = written_down()
+        after.pop("images")
+        assert not differences(before, after)
+        printed = "".join(capfd.readouterr())
+        assert "Traceback" not in printed
+        for word in words:
+            assert word in scene.afterlight.report, scene.afterlight.report
+        assert "Afterlight: " + scene.afterlight.report in printed
+        if picture is not None:
+            np.testing.assert_array_equal(rendered, picture)
+        return rendered
+    return check
+
+
+def test_no_camera(scene, refuse):
+    bpy.data.objects.remove(scene.camera)
+    assert refuse("no camera", "Add one") is None
+
+
+@pytest.mark.parametrize("engine", ["CYCLES", "BLENDER_WORKBENCH"])
+def test_another_engine(scene, refuse, engine):
+    bpy.ops.preferences.addon_enable(module="cycles")
+    scene.render.engine = engine
+    if engine == "CYCLES":
+        scene.cycles.samples = 1
+    assert refuse("EEVEE", "Render Engine", engine.split("_")[-1].title()) is not None
+
+
+def test_panoramic_camera(scene, refuse):
+    scene.camera.data.type = "PANO"
+    assert refuse("panoramic", "Lens Type") is not None
+
+
+def test_camera_that_is_none(scene, refuse):
+    scene.camera = bpy.data.objects["Lamp"]
+    assert refuse("Lamp", "no camera") is not None
+
+
+def test_no_view_layer(scene, refuse):
+    scene.view_layers[0].use = False
+    refuse("No view layer", "Use for Rendering")
+
+
+def test_stereo(scene, refuse):
+    scene.render.use_multiview = True
+    scene.render.image_settings.views_format = "STEREO_3D"
+    try:
+        refuse("Stereo", "Untick")
+    except (FileNotFoundError, OSError):
+        pass  # Blender names stereo files otherwise
+
+
+def test_ray_tracing_never_doubles_the_light(scene, refuse, tmp_path):
+    scene.eevee.use_raytracing = True
+    scene.afterlight.enabled = False
+    alone = read_rgb(render(scene, tmp_path / "alone.exr"))
+    scene.afterlight.enabled = True
+    refuse("ray tracing", "twice", picture=alone)
+
+
+def test_single_layer(scene, refuse):
+    scene.render.use_single_layer = True
+    refuse("Single Layer")
+
+
+def test_compositing_switched_off(scene, plain, tmp_path, afterlight):
+    """Without a window nobody can press Repair, so it is put right; with one the panel says so."""
+    scene.render.use_compositing = False
+    assert "Compositing is switched off" in afterlight.addon.pipeline.wiring.faults(scene)[0]
+    lit = read_rgb(render(scene, tmp_path / "lit.exr"))
+    assert (lit - plain).mean() > 0 and scene.afterlight.report == ""
+
+
+def test_temporary_folder_cannot_be_written(scene, refuse, plain):
+    folder = bpy.app.tempdir.rstrip("/")
+    shutil.rmtree(folder)
+    open(folder, "w").close()  # root, as whom tests may run, writes even to a read-only folder; not to this
+    try:
+        refuse("could not be written", folder, "Temporary Files", picture=plain)
+    finally:
+        os.remove(folder)
+        os.mkdir(folder)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
+def test_disk_full(scene, refuse, plain):
+    trap = os.path.join(bpy.app.tempdir, f"afterlight_{scene.session_uid}.exr")
+    os.symlink("/dev/full", trap)
+    try:
+        refuse("could not be", "Temporary Files" if not os.path.exists(trap) else "disk", picture=plain)
+    finally:
+        if os.path.lexists(trap):
+            os.remove(trap)
+
+
+def test_openexr_missing(scene, refuse, plain, monkeypatch):
+    monkeypatch.setitem(sys.modules, "OpenEXR", None)
+    refuse("OpenEXR", "install it again", picture=plain)
+
+
+def test_no_gpu(scene, refuse, plain, afterlight, monkeypatch):
+    def no_gpu(*_, **__):
+        raise SystemError("GPU functions for drawing are not available in background mode")
+    monkeypatch.setattr(afterlight.addon.light.device.gpu.types, "GPUTexture", no_gpu, raising=True)
+    refuse("GPU", "driver", picture=plain)
+
+
+def test_nan_and_infinity_in_a_pass(scene, plain, afterlight, monkeypatch, tmp_path, capfd):
+    engine = afterlight.addon.pipeline.engine
+    load = engine.passes.load
+
+    def spoiled(*arguments):
+        passes = load(*arguments)
+        passes.diffuse_direct[0][5:8, 5:8] = np.nan
+        passes.emission[1][20, 30] = np.inf
+        return passes
+
+    monkeypatch.setattr(engine.passes, "load", spoiled)
+    lit = read_rgb(render(scene, tmp_path / "lit.exr"))
+    gain = lit - plain
+    assert np.isfinite(lit).all() and not gain[5:8, 5:8].any() and gain.mean() > 0
+    printed = "".join(capfd.readouterr())
+    assert "9 pixels of diffuse direct" in printed and "1 pixels of emission" in printed
+    assert scene.afterlight.report == "" and "Traceback" not in printed
+
+
+def test_nothing_but_background(scene, tmp_path):
+    for thing in [thing for thing in scene.objects if thing.type == "MESH"]:
+        bpy.data.objects.remove(thing)
+    lit = read_rgb(render(scene, tmp_path / "lit.exr"))
+    assert not lit.any() and scene.afterlight.report == ""
+
+
+@pytest.mark.parametrize("size", [(1, 1), (8192, 16)])
+def test_odd_sizes(scene, tmp_path, size):
+    scene.render.resolution_x, scene.render.resolution_y = (max(4, extent) for extent in size)
+    if size == (1, 1):
+        scene.render.resolution_percentage = 25
+    lit = read_rgb(render(scene, tmp_path / "lit.exr"))
+    assert lit.shape == (size[1], size[0], 3) and np.isfinite(lit).all() and scene.afterlight.report == ""
+
+
+def test_a_good_render_forgets_the_last_message(scene, tmp_path):
+    scene.eevee.use_raytracing = True
+    render(scene, tmp_path / "picture.exr")
+    assert scene.afterlight.report
+    scene.eevee.use_raytracing = False
+    render(scene, tmp_path / "picture.exr")
+    assert scene.afterlight.report == ""
+
+
+def test_the_helper_scene_says_what_it_is(scene, tmp_path, capfd):
+    helper = scene.afterlight.helper
+    try:
+        bpy.ops.render.render(scene=helper.name)
+    except RuntimeError as error:
+        assert 'no render of "Scene"' in str(error) and "Render that one" in str(error)
+    else:
+        pytest.fail("rendered a scene that serves to light another")
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+def test_background_render_makes_what_python_saves_passes_through(scene, afterlight):
+    """`blender -b -f 1` starts without the image that F12 makes."""
+    passes, handlers = afterlight.addon.pipeline.passes, afterlight.addon.pipeline.handlers
+    while passes.render_result():
+        bpy.data.images.remove(passes.render_result())
+    handlers.before_render(scene)
+    assert passes.render_result() and scene.afterlight.report == ""
+
+
+def test_the_exit_code_of_a_failed_background_render(afterlight):
+    status = afterlight.addon.pipeline.status
+    child = os.fork()
+    if child == 0:  # only to leave as `blender -b` would
+        shutil.rmtree = lambda *_, **__: None
+        status._failed = True
+        status._exit_code()
+        os._exit(7)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 1
