@@ -127,8 +127,9 @@ class AfterlightEngine(bpy.types.RenderEngine):
         """The indirect light into our pass of the layer; black where there is none."""
         *_, width, height = shot.window
         result = self.begin_result(0, 0, width, height, layer=shot.layer)
-        pixels = np.zeros((height, width, 3), np.float32) if picture is None else picture[..., :3]
-        result.layers[0].passes[PASS].rect.foreach_set(pixels.ravel())
+        if picture is None:
+            picture = np.zeros((result.resolution_y, result.resolution_x, 3), np.float32)
+        result.layers[0].passes[PASS].rect.foreach_set(picture[..., :3].ravel())
         self.end_result(result)
 
 
