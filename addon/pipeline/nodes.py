@@ -109,24 +109,18 @@ def light_node(tree, helper, layer):
 
 
 def retarget(tree, scene, old, helper):
-    """Make our light nodes show `helper` instead of `old`, and the view layer that the picture beside them shows.
-
-    Returns whether anything changed."""
-    changed = False
+    """Make our light nodes show `helper` instead of `old`, and the view layer that the picture beside them shows."""
     for node in tree.nodes:
         if role(node) == "light" and node.scene in (old, None) and node.scene != helper:
             layer = node.layer
             node.scene = helper
             if layer in helper.view_layers:
                 node.layer = layer
-            changed = True
     for add in [node for node in tree.nodes if role(node) == "add"]:
         light, picture = source(add, B), source(add, A)
         if light and picture and role(light) == "light" and light.scene == helper and shows(picture, scene):
             if light.layer != picture.layer:
                 light.layer = picture.layer
-                changed = True
-    return changed
 
 
 def source(node, identifier):

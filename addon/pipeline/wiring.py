@@ -27,6 +27,8 @@ def connect(scene):
         # Blender looks for scenes to render only among the nodes of the top level, not in groups.
         nodes.light_node(tree, helper, nodes.pictures(tree, scene)[0].layer).location = (-400, -400)
     follow(scene)
+    # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
+    helper.view_layers[0].update()
 
 
 def follow(scene):
@@ -34,22 +36,20 @@ def follow(scene):
     the scene renamed or copied. Puts no node where the user may have taken one away."""
     helper = scene.afterlight.helper
     if helper is not None and helper.afterlight.source != scene:
-        return connect(scene)  # a copied scene: it still names the helper of its original
+        connect(scene)  # a copied scene: it still names the helper of its original
+        return
     if helper is None:
-        return None  # deleted by hand: checks.py says so, with a button
-    changed = _mirror_layers(scene, helper)
+        return  # deleted by hand: checks.py says so, with a button
+    _mirror_layers(scene, helper)
     for group in nodes.trees(scene.compositing_node_group):
-        changed |= nodes.retarget(group, scene, helper, helper)
+        nodes.retarget(group, scene, helper, helper)
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
-        changed |= _assign(mirror, "use", layer.use and layer.name in lit)
+        _assign(mirror, "use", layer.use and layer.name in lit)
         if layer.name in lit:
             _switch_passes_on(layer)
-    changed |= _assign(helper, "name", HELPER_NAME.format(scene.name)[:250])
-    if changed:
-        # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
-        helper.view_layers[0].update()
-    return None
+    if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
+        helper.name = _helper_name(scene)
 
 
 def disconnect(scene):
@@ -110,7 +110,7 @@ def faults(scene):
 def _own_helper(scene):
     helper = scene.afterlight.helper
     if helper is None or helper.afterlight.source not in (scene, None):
-        helper = bpy.data.scenes.new(HELPER_NAME.format(scene.name)[:250])
+        helper = bpy.data.scenes.new(_helper_name(scene))
         helper[MARK] = "helper"
         # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
         helper.camera = bpy.data.objects.new(helper.name, bpy.data.cameras.new(helper.name))
@@ -123,6 +123,10 @@ def _own_helper(scene):
     return helper
 
 
+def _helper_name(scene):
+    return HELPER_NAME.format(scene.name)[:250]
+
+
 def _remove_helper(helper):
     for camera in [each for each in helper.collection.objects if each.type == "CAMERA"]:
         bpy.data.cameras.remove(camera.data)  # and the object with it
@@ -130,10 +134,10 @@ def _remove_helper(helper):
 
 
 def _mirror_layers(scene, helper):
-    """Give `helper` the view layers of `scene`, name by name in the same order. Returns whether it had to."""
+    """Give `helper` the view layers of `scene`, name by name in the same order."""
     names = [layer.name for layer in scene.view_layers]
     if [layer.name for layer in helper.view_layers] == names:
-        return False
+        return
     while len(helper.view_layers) > len(names):
         helper.view_layers.remove(helper.view_layers[-1])
     for index, layer in enumerate(helper.view_layers):
@@ -142,7 +146,6 @@ def _mirror_layers(scene, helper):
         layer.name = name
     for name in names[len(helper.view_layers):]:
         helper.view_layers.new(name)
-    return True
 
 
 def _owner(tree, scene):
@@ -230,7 +233,6 @@ def _switch_passes_off(scene, layer):
 
 
 def _assign(data, name, value):
-    if getattr(data, name) == value:
-        return False
-    setattr(data, name, value)
-    return True
+    """Set only what differs: setting tags the file as edited, and Blender would call us again."""
+    if getattr(data, name) != value:
+        setattr(data, name, value)
