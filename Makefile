@@ -13,8 +13,8 @@ test: setup      ## every test, under 15 minutes on two cores; make test PYTEST=
 package: setup   ## dist/afterlight-<version>.zip, to be installed in Blender
 	$(python) tools/extension.py package
 
-demo: package    ## before and after pictures of the sample scenes
-	$(python) sample_blends/demo.py
+demo: package    ## before and after pictures of a sample scene; make demo DEMO=--all for all of them
+	$(python) sample_blends/demo.py $(DEMO)
 
 samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
