@@ -7,7 +7,7 @@ import bpy
 from bl_ui.utils import PresetPanel
 from bpy.types import Menu, Panel
 
-from .pipeline import checks, status
+from .pipeline import checks, status, wiring
 
 FOLDER = str(Path(__file__).parent)
 
@@ -35,7 +35,7 @@ class _InRenderProperties:
     def poll(cls, context):
         # Where the box is ticked the panel stays, to say that another engine can't be lit.
         scene = context.scene
-        return scene.render.engine == "BLENDER_EEVEE" or scene.afterlight.enabled
+        return scene.render.engine == "BLENDER_EEVEE" or scene.afterlight.enabled or wiring.is_helper(scene)
 
 
 class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
@@ -51,7 +51,7 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
     def draw(self, context):
         layout, settings = self.layout, context.scene.afterlight
         layout.use_property_split, layout.use_property_decorate = True, True
-        if settings.enabled or settings.source:
+        if settings.enabled or wiring.is_helper(context.scene):
             width = max(20, int(context.region.width / context.preferences.system.ui_scale / 7))
             for finding in checks.findings(context.scene):
                 _draw_finding(layout, finding, width)

@@ -89,8 +89,6 @@ class AfterlightSettings(bpy.types.PropertyGroup):
     helper: PointerProperty(
         type=bpy.types.Scene, options={"HIDDEN"},
         description="The scene through which Blender calls Afterlight while it renders this one")
-    source: PointerProperty(
-        type=bpy.types.Scene, options={"HIDDEN"}, description="On a helper scene: the scene whose light it gathers")
     own_tree: PointerProperty(
         type=bpy.types.NodeTree, options={"HIDDEN"},
         description="The compositor tree Afterlight made where the scene had none in use")

@@ -48,6 +48,13 @@ def test_connecting_twice_changes_nothing(scene, wiring, kind):
     assert not differences(once, written_down())
 
 
+def test_the_scene_is_not_given_users(scene):
+    """Blender would show their number beside the scene's name."""
+    users = scene.users
+    scene.afterlight.enabled = True
+    assert scene.users == users
+
+
 def test_a_tree_that_was_switched_off_stays_off(scene):
     tree = simple_tree(scene)
     scene.render.use_compositing = False
@@ -183,9 +190,9 @@ def test_a_copied_scene_gets_a_helper_of_its_own(scene, wiring, how, kind):
     copy = next(each for each in bpy.data.scenes if each not in helpers() and each != scene)
     wiring.follow(copy)
     assert copy.afterlight.enabled == (how != "NEW")
-    assert scene.afterlight.helper.afterlight.source == scene and not wiring.faults(scene)
+    assert wiring.source(scene.afterlight.helper) == scene and not wiring.faults(scene)
     if copy.afterlight.enabled:
-        assert copy.afterlight.helper.afterlight.source == copy and not wiring.faults(copy)
+        assert wiring.source(copy.afterlight.helper) == copy and not wiring.faults(copy)
         copy.afterlight.enabled = False
         assert not copy.compositing_node_group or not ours(copy.compositing_node_group)
     assert not wiring.faults(scene)

@@ -21,8 +21,9 @@ def findings(scene):
     """Everything wrong with `scene`, what matters most first. Reads the scene, changes nothing."""
     render, camera = scene.render, scene.camera
     found = []
-    if scene.afterlight.source:
-        return [Finding(f'This scene only serves to light "{scene.afterlight.source.name}". Render that one')]
+    if wiring.is_helper(scene):
+        lit = wiring.source(scene)
+        return [Finding(f'This scene only serves to light "{lit.name if lit else "another"}". Render that one')]
     if render.engine != "BLENDER_EEVEE":
         engine = render.engine.removeprefix("BLENDER_").title()
         found.append(Finding(f"Indirect Light works on EEVEE's passes, and the render engine is {engine}. Set Render "

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from .. import light, settings
-from . import checks, passes, status
+from . import checks, passes, status, wiring
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -47,7 +47,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
         self.shot = None
         if self.idle:
             return
-        source = depsgraph.scene.afterlight.source
+        source = wiring.source(depsgraph.scene)
         if source is None:
             self.report({"ERROR"}, "Afterlight: this engine works for its helper scenes only. Set Render Engine to "
                                    "EEVEE and tick Indirect Light")

@@ -50,11 +50,11 @@ def goes_dark(node):
     return any(role(link.to_node) != "add" for link in node.outputs["Image"].links)
 
 
-def lost_image(tree, helper):
+def lost_image(tree, scene, helper):
     """View layers whose adding node is gone together with the links it had: nobody uses their image any more."""
     found = []
     for light in [node for node in tree.nodes if shows(node, helper) and not node.outputs[PASS].is_linked]:
-        images = [picture.outputs["Image"] for picture in tree.nodes if _same_layer(picture, light)]
+        images = [picture.outputs["Image"] for picture in tree.nodes if _same_layer(picture, light, scene)]
         if images and not any(image.is_linked for image in images):
             found.append(light.layer)
     return found
@@ -139,9 +139,9 @@ def _light_for(tree, picture, helper):
     return next(idle, None) or light_node(tree, helper, picture.layer)
 
 
-def _same_layer(picture, light):
+def _same_layer(picture, light, scene):
     return (picture.bl_idname == light.bl_idname and picture.layer == light.layer
-            and picture.scene == light.scene.afterlight.source)
+            and picture.scene == scene)
 
 
 def _new(tree, idname, kind):

@@ -35,7 +35,7 @@ def follow(scene):
     """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
     the scene renamed or copied. Puts no node where the user may have taken one away."""
     helper = scene.afterlight.helper
-    if helper is not None and helper.afterlight.source != scene:
+    if helper is not None and source(helper) != scene:
         connect(scene)  # a copied scene: it still names the helper of its original
         return
     if helper is None:
@@ -59,24 +59,37 @@ def disconnect(scene):
         for group in nodes.trees(tree):
             nodes.unsplice(group, scene, helper)
     _restore_tree(scene)
+    owner = helper and source(helper)
     for layer in scene.view_layers:
         _switch_passes_off(scene, layer)
     settings.helper = None
-    if helper is not None and helper.afterlight.source == scene:
+    if helper is not None and owner == scene:
         _remove_helper(helper)
+
+
+def is_helper(scene):
+    """Whether the scene is one that connect() made."""
+    return scene.get(MARK) == "helper"
+
+
+def source(helper):
+    """The scene whose light `helper` gathers, or None. A copied scene names the helper of its original until follow()
+    has seen it; the original is older."""
+    return min((scene for scene in bpy.data.scenes if scene.afterlight.helper == helper),
+               key=lambda scene: scene.session_uid, default=None)
 
 
 def clean_up():
     """Remove helper scenes whose own scene has been deleted."""
-    for scene in [scene for scene in bpy.data.scenes if scene.get(MARK) == "helper" and not scene.library]:
-        if scene.afterlight.source is None:
+    for scene in [scene for scene in bpy.data.scenes if is_helper(scene) and not scene.library]:
+        if source(scene) is None:
             _remove_helper(scene)
 
 
 def faults(scene):
     """What is missing from the wiring of an enabled scene, as sentences for people; empty where all is in place."""
     helper, tree = scene.afterlight.helper, scene.compositing_node_group
-    if helper is None or helper.afterlight.source != scene or helper.render.engine != ENGINE:
+    if helper is None or source(helper) != scene or helper.render.engine != ENGINE:
         return ["Afterlight's helper scene was deleted or changed"]
     if tree is None or not scene.render.use_compositing:
         return ["Compositing is switched off, so the light can't be added to the picture"]
@@ -89,7 +102,7 @@ def faults(scene):
         return ["All Render Layers nodes of this scene are inside node groups, and then Blender does not render the "
                 "scene. Add one at the top level of the compositor; it need not be linked"]
     found = []
-    lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, helper)]
+    lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, scene, helper)]
     if lost:
         found.append(f"The node that adds the light to {', '.join(lost)} was deleted, and the links of the image with "
                      "it. Link the Image of its Render Layers node again, then press Repair")
@@ -109,7 +122,7 @@ def faults(scene):
 
 def _own_helper(scene):
     helper = scene.afterlight.helper
-    if helper is None or helper.afterlight.source not in (scene, None):
+    if helper is None or source(helper) != scene:
         helper = bpy.data.scenes.new(_helper_name(scene))
         helper[MARK] = "helper"
         # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
@@ -118,7 +131,6 @@ def _own_helper(scene):
         helper.render.resolution_x = helper.render.resolution_y = 4  # it is always rendered at its source's
         helper.eevee.taa_render_samples = 1  # what is rendered in its place where the extension is missing
         scene.afterlight.helper = helper
-    helper.afterlight.source = scene
     helper.render.engine = ENGINE
     return helper
 
