@@ -50,6 +50,7 @@ def test_connecting_twice_changes_nothing(scene, wiring, kind):
 
 def test_the_scene_is_not_given_users(scene):
     """Blender would show their number beside the scene's name."""
+    simple_tree(scene)
     users = scene.users
     scene.afterlight.enabled = True
     assert scene.users == users
