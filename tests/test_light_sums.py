@@ -149,6 +149,13 @@ def test_regions_tile_the_plane(light, radius):
     assert np.hypot(*ring.T).min() == pytest.approx(radius / 2, abs=1)
 
 
+def test_samples_double_from_level_to_level(light):
+    """Up to the whole region; 0 asks for the whole region at once."""
+    samples_at = light.pipeline.samples_at
+    assert [samples_at(level, 64, 600) for level in range(5)] == [64, 128, 256, 512, 600]
+    assert samples_at(0, 0, 600) == samples_at(0, 1024, 600) == 600
+
+
 def test_the_same_seed_is_the_same_picture(light):
     passes, camera = fixtures.rendered_box(light)
     def picture(seed):

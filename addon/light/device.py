@@ -16,7 +16,7 @@ from .region import TABLE_WIDTH
 
 SHADERS = Path(__file__).resolve().parents[2] / "shaders"
 GROUP = 8                  # threads along the side of a work group
-BAND_COST = 1 << 24        # texture samples in one dispatch: a second on a software GPU, far from any watchdog
+BAND_COST = 1 << 24        # texture samples in one dispatch: under a second even on a software GPU
 
 
 class GpuUnavailable(RuntimeError):

@@ -55,7 +55,7 @@ def samples_at(level: int, samples: int, texels: int) -> int:
     region), doubled from level to level, never more than the region has.
 
     A coarse texel's noise spreads over all it is upsampled to, and a level has a quarter of the texels of the one
-    before: doubling costs half as much again in all and quarters the error (docs/method.md).
+    before: doubling costs at most half as much again in all and cuts the noise 1.4 to 7 times (docs/method.md).
     """
     return min(samples << level, texels) if samples else texels
 
