@@ -48,14 +48,6 @@ def test_connecting_twice_changes_nothing(scene, wiring, kind):
     assert not differences(once, written_down())
 
 
-def test_the_scene_is_not_given_users(scene):
-    """Blender would show their number beside the scene's name."""
-    simple_tree(scene)
-    users = scene.users
-    scene.afterlight.enabled = True
-    assert scene.users == users
-
-
 def test_a_tree_that_was_switched_off_stays_off(scene):
     tree = simple_tree(scene)
     scene.render.use_compositing = False
