@@ -42,14 +42,15 @@ PARAMETERS = (
             ("FULL", "Full", "One texel a pixel: sixteen times the cost of Quarter", 2))}),
     Parameter(
         "samples", IntProperty, "Samples",
-        "Random samples of each texel at each level. Time grows in proportion, noise falls with the square root. Where "
-        "the radius holds fewer texels than this, each is visited once and there is no noise at all",
+        "Random samples a texel takes at the finest level, twice as many at each coarser one, where noise shows most. "
+        "Time grows in proportion, noise falls with the square root. Where the radius holds fewer texels than that, "
+        "each is visited once and there is no noise at all",
         {"default": 64, "min": 16, "max": 1024, "soft_min": 16, "soft_max": 1024}),
     Parameter(
         "radius", IntProperty, "Radius",
         "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact "
         "sum over all pixels, but the same samples are spread over more texels and the light gets noisier",
-        {"default": 8, "min": 2, "max": 64, "soft_min": 4, "soft_max": 32, "subtype": "PIXEL"}),
+        {"default": 16, "min": 2, "max": 64, "soft_min": 4, "soft_max": 32, "subtype": "PIXEL"}),
     Parameter(
         "seed", IntProperty, "Seed",
         "Pattern of the random samples. The same seed gives the same picture, bit for bit",

@@ -3,4 +3,4 @@ settings = bpy.context.scene.afterlight
 
 settings.start = "HALF"
 settings.samples = 256
-settings.radius = 8
+settings.radius = 16

@@ -2,5 +2,5 @@ import bpy
 settings = bpy.context.scene.afterlight
 
 settings.start = "FULL"
-settings.samples = 1024
-settings.radius = 16
+settings.samples = 256
+settings.radius = 24
