@@ -25,13 +25,15 @@ def begin(scene):
 
 
 def fail(scene, text):
-    """Remember why `scene` was not lit. Returns True where that was not known yet in this render."""
+    """Remember why `scene` was not lit. Returns whether that is news, so that an animation says it once."""
     global _failed
     _failed = True
-    known = _messages.setdefault(scene.session_uid, text)
-    if known == text and not bpy.app.background:
+    if message(scene) == text:
+        return False
+    _messages[scene.session_uid] = text
+    if not bpy.app.background:
         bpy.app.timers.register(lambda: _pop_up(text))
-    return known == text
+    return True
 
 
 def message(scene):
