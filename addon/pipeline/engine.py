@@ -7,7 +7,7 @@ loads those of the view layer at hand, gathers (light/pipeline.py) and hands the
 """
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -29,6 +29,7 @@ class Shot:
     camera: light.Camera = None
     settings: light.Settings = None
     problem: str = ""
+    stages: dict = field(default_factory=dict)  # seconds by stage
 
 
 class AfterlightEngine(bpy.types.RenderEngine):
@@ -73,7 +74,10 @@ class AfterlightEngine(bpy.types.RenderEngine):
         except (Problem, light.GpuUnavailable) as problem:
             if status.fail(shot.scene, str(problem)):
                 self.report({"ERROR"}, f"Afterlight: {problem}")
+        start = time.perf_counter()
         self._hand_back(shot, picture)
+        shot.stages["hand back"] = time.perf_counter() - start
+        status.timed(shot.scene, shot.stages)
 
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes' file is no longer needed."""
@@ -99,23 +103,23 @@ class AfterlightEngine(bpy.types.RenderEngine):
             helper.camera = own
 
     def _gather(self, shot):
-        stages = {}
         start = time.perf_counter()
         if not getattr(self, "file", None):  # the first view layer of the frame saves the passes of all
             self._progress("Saving passes", 0.0)
             self.file = passes.save(shot.scene)
-            stages["write passes"] = time.perf_counter() - start
+            shot.stages["write passes"] = time.perf_counter() - start
         start = time.perf_counter()
         frame = passes.load(self.file, shot.layer, shot.window)
         broken = frame.repair()
-        stages["read passes"] = time.perf_counter() - start
+        shot.stages["read passes"] = time.perf_counter() - start
         for name, count in broken.items():
             self.report({"WARNING"}, f"Afterlight: {count} pixels of {name.replace('_', ' ')} in {shot.layer} are NaN "
                                      "or infinite. They neither give nor get indirect light; look for a material that "
                                      "divides by zero or a light of unbounded strength")
+        start = time.perf_counter()
         timed = {} if status.wants_stages else None
         picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed)
-        status.timed(shot.scene, stages | (timed or {"gather on the GPU": time.perf_counter() - start}))
+        shot.stages |= timed or {"gather on the GPU": time.perf_counter() - start}
         return picture
 
     def _progress(self, stage, fraction):
