@@ -7,6 +7,7 @@ loads those of the view layer at hand, gathers (light/pipeline.py) and hands the
 """
 
 import time
+import traceback
 from dataclasses import dataclass, field
 
 import bpy
@@ -50,8 +51,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
             return
         source = wiring.source(depsgraph.scene)
         if source is None:
-            self.report({"ERROR"}, "Afterlight: this engine works for its helper scenes only. Set Render Engine to "
-                                   "EEVEE and tick Indirect Light")
+            self._fail(depsgraph.scene, "This engine works for Afterlight's helper scenes only. Set Render Engine to "
+                                        "EEVEE and tick Indirect Light")
             return
         self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0])
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
@@ -72,12 +73,19 @@ class AfterlightEngine(bpy.types.RenderEngine):
         except light.Cancelled:
             pass
         except (Problem, light.GpuUnavailable) as problem:
-            if status.fail(shot.scene, str(problem)):
-                self.report({"ERROR"}, f"Afterlight: {problem}")
+            self._fail(shot.scene, str(problem))
+        except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
+            traceback.print_exc()
+            self._fail(shot.scene, f"Afterlight met an error of its own ({error}). The terminal has the details; please "
+                             "report them")
         start = time.perf_counter()
         self._hand_back(shot, picture)
         shot.stages["hand back"] = time.perf_counter() - start
         status.timed(shot.scene, shot.stages)
+
+    def _fail(self, scene, text):
+        if status.fail(scene, text):
+            self.report({"ERROR"}, f"Afterlight: {text}")
 
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes' file is no longer needed."""
