@@ -36,7 +36,7 @@ PARAMETERS = (
         "start", EnumProperty, "Start Resolution",
         "Finest resolution at which light is gathered. Each step up costs four times as much and sharpens the light "
         "near edges and contacts; it does not change how bright the light is",
-        {"default": "QUARTER", "items": (
+        {"default": "HALF", "items": (
             ("QUARTER", "Quarter", "One texel for 4 x 4 pixels: the fastest, softest near contacts", 0),
             ("HALF", "Half", "One texel for 2 x 2 pixels: four times the cost of Quarter", 1),
             ("FULL", "Full", "One texel a pixel: sixteen times the cost of Quarter", 2))}),
@@ -45,7 +45,7 @@ PARAMETERS = (
         "Random samples a texel takes at the finest level, twice as many at each coarser one, where noise shows most. "
         "Time grows in proportion, noise falls with the square root. Where the radius holds fewer texels than that, "
         "each is visited once and there is no noise at all",
-        {"default": 64, "min": 16, "max": 1024, "soft_min": 16, "soft_max": 1024}),
+        {"default": 256, "min": 16, "max": 1024, "soft_min": 16, "soft_max": 1024}),
     Parameter(
         "radius", IntProperty, "Radius",
         "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact "

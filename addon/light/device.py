@@ -150,6 +150,9 @@ def dispatch(name: str, block: np.ndarray, textures: dict, rows_cost: int = 0, a
             program.image(image, textures[image])
         rows = min(band, target.height - first)
         gpu.compute.dispatch(program, -(-target.width // GROUP), -(-rows // GROUP), 1)
+        # Blender's context remembers what was bound last by its address. Left bound and freed later, it would be taken
+        # for whatever shader gets that address next, and the compositor then crashes in the driver.
+        gpu.shader.unbind()
         if band < target.height:
             wait(target)
             after_band((first + rows) / target.height)

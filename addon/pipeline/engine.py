@@ -30,7 +30,10 @@ class Shot:
     camera: light.Camera = None
     settings: light.Settings = None
     problem: str = ""
-    stages: dict = field(default_factory=dict)  # seconds by stage
+    seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
+
+    def spent(self, stage, seconds):
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + seconds
 
 
 class AfterlightEngine(bpy.types.RenderEngine):
@@ -40,13 +43,15 @@ class AfterlightEngine(bpy.types.RenderEngine):
     bl_use_gpu_context = True
 
     idle = False  # render nothing: handlers.py has a use for an empty render
+    shot = None
+    file = ""  # the saved passes of the frame, between its first view layer and its last
 
     def update_render_passes(self, scene, layer):
         self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
 
     def update(self, data, depsgraph):
         """Look at the scene: Blender holds the interface off while this runs, so it is short."""
-        self.shot = None
+        before, self.shot = self.shot, None
         if self.idle:
             return
         source = wiring.source(depsgraph.scene)
@@ -55,6 +60,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
                                         "EEVEE and tick Indirect Light")
             return
         self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0])
+        if before and self.file:  # another view layer of the same frame
+            shot.seconds = before.seconds
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
         if not shot.problem:
             shot.settings = settings.light_settings(source.afterlight, source.frame_current)
@@ -80,8 +87,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
                              "report them")
         start = time.perf_counter()
         self._hand_back(shot, picture)
-        shot.stages["hand back"] = time.perf_counter() - start
-        status.timed(shot.scene, shot.stages)
+        shot.spent("hand back", time.perf_counter() - start)
+        status.timed(shot.scene, shot.seconds)
 
     def _fail(self, scene, text):
         if status.fail(scene, text):
@@ -89,9 +96,9 @@ class AfterlightEngine(bpy.types.RenderEngine):
 
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes' file is no longer needed."""
-        if getattr(self, "file", None):
+        if self.file:
             passes.discard(self.file)
-            self.file = None
+            self.file = ""
 
     def _look(self, depsgraph, source):
         """light.Camera of the frame. `source`'s camera is evaluated through our own depsgraph, with nothing else of
@@ -112,14 +119,14 @@ class AfterlightEngine(bpy.types.RenderEngine):
 
     def _gather(self, shot):
         start = time.perf_counter()
-        if not getattr(self, "file", None):  # the first view layer of the frame saves the passes of all
+        if not self.file:  # the first view layer of the frame saves the passes of all
             self._progress("Saving passes", 0.0)
             self.file = passes.save(shot.scene)
-            shot.stages["write passes"] = time.perf_counter() - start
+            shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         frame = passes.load(self.file, shot.layer, shot.window)
         broken = frame.repair()
-        shot.stages["read passes"] = time.perf_counter() - start
+        shot.spent("read passes", time.perf_counter() - start)
         for name, count in broken.items():
             self.report({"WARNING"}, f"Afterlight: {count} pixels of {name.replace('_', ' ')} in {shot.layer} are NaN "
                                      "or infinite. They neither give nor get indirect light; look for a material that "
@@ -127,7 +134,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
         start = time.perf_counter()
         timed = {} if status.wants_stages else None
         picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed)
-        shot.stages |= timed or {"gather on the GPU": time.perf_counter() - start}
+        for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
+            shot.spent(stage, seconds)
         return picture
 
     def _progress(self, stage, fraction):
