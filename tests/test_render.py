@@ -101,6 +101,16 @@ def test_the_indirect_light_is_a_pass_and_the_picture_is_the_sum(scene, tmp_path
     np.testing.assert_allclose(plain + indirect, lit, atol=2e-5)
 
 
+def test_both_of_blenders_compositors_add_it(scene, tmp_path):
+    """GPU is Blender's default. No other test uses it: see scenes.box()."""
+    scene.afterlight.enabled = True
+    on_cpu = read_rgb(render(scene, tmp_path / "cpu.exr"))
+    scene.render.compositor_device = "GPU"
+    on_gpu = read_rgb(render(scene, tmp_path / "gpu.exr"))
+    assert scene.afterlight.report == ""
+    np.testing.assert_allclose(on_gpu, on_cpu, atol=2e-3)  # the GPU compositor works in half precision by default
+
+
 def test_strength_scales_and_seed_decides(scene, tmp_path):
     settings = scene.afterlight
     settings.samples, settings.radius = 16, 8
