@@ -100,9 +100,17 @@ def test_ray_tracing_never_doubles_the_light(scene, refuse, tmp_path):
     refuse("ray tracing", "twice", picture=alone)
 
 
-def test_single_layer(scene, refuse):
-    scene.render.use_single_layer = True
-    refuse("Single Layer")
+def test_single_layer(scene, refuse, tmp_path):
+    """Blender then adds what the helper scene rendered last, so the light of another frame must be kept out."""
+    lamp = bpy.data.objects["Lamp"]
+    there, lamp.location.x = lamp.location.x, -1
+    scene.afterlight.enabled = False
+    plain = read_rgb(render(scene, tmp_path / "plain.exr"))
+    scene.afterlight.enabled, lamp.location.x = True, there
+    render(scene, tmp_path / "lit.exr")
+    scene.render.use_single_layer, lamp.location.x = True, -1
+    refuse("Single Layer", picture=plain)
+    assert not scene.compositing_node_group.nodes["Afterlight"].mute
 
 
 def test_compositing_switched_off(scene, plain, tmp_path, afterlight):

@@ -41,7 +41,7 @@ def findings(scene):
     if render.use_multiview:
         found.append(Finding("Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output "
                              "properties"))
-    if render.use_single_layer and len(scene.view_layers) > 0:
+    if render.use_single_layer:
         found.append(Finding("Render Single Layer is on, and with it Blender leaves out the scene that gathers the "
                              "light. Untick it in the View Layer properties"))
     if render.use_sequencer and scene.sequence_editor and len(scene.sequence_editor.strips):

@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, passes, status, wiring
+from . import checks, nodes, passes, status, wiring
 from .engine import AfterlightEngine
 
 
@@ -44,6 +44,25 @@ def before_render(scene, *_):
         if finding.fatal:
             status.fail(scene, finding.text)
         print(f"Afterlight: {finding.text}")
+    if status.message(scene):
+        _mute(scene)
+
+
+@persistent
+def after_render(*_):
+    """Complete or cancelled: undo _mute()."""
+    while _muted:
+        tree, node = _muted.pop()
+        if tree in bpy.data.node_groups and node in bpy.data.node_groups[tree].nodes:
+            bpy.data.node_groups[tree].nodes[node].mute = False
+
+
+def _mute(scene):
+    """Keep our light out of this render: where our engine is not called, Blender would add the light of the last."""
+    for node in nodes.all_nodes(scene.compositing_node_group):
+        if nodes.role(node) == "add" and not node.mute:
+            node.mute = True
+            _muted.append((node.id_data.name, node.name))
 
 
 def _ensure_render_result(helper):
@@ -57,8 +76,11 @@ def _ensure_render_result(helper):
             AfterlightEngine.idle = False
 
 
+_muted = []  # names of trees and nodes
+
 HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", follow_all), ("undo_post", follow_all),
-            ("redo_post", follow_all), ("render_init", before_render))
+            ("redo_post", follow_all), ("render_init", before_render),
+            ("render_complete", after_render), ("render_cancel", after_render))
 
 
 def register():
