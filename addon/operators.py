@@ -9,7 +9,7 @@ from .pipeline import wiring
 from .settings import PARAMETERS
 
 
-class _OnEeveeScene:
+class _OnEditableScene:
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -17,7 +17,7 @@ class _OnEeveeScene:
         return context.scene is not None and context.scene.library is None
 
 
-class AFTERLIGHT_OT_repair(_OnEeveeScene, Operator):
+class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
     """Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor"""
 
     bl_idname = "afterlight.repair"
@@ -34,7 +34,7 @@ class AFTERLIGHT_OT_repair(_OnEeveeScene, Operator):
         return {"FINISHED"}
 
 
-class AFTERLIGHT_OT_ray_tracing_off(_OnEeveeScene, Operator):
+class AFTERLIGHT_OT_ray_tracing_off(_OnEditableScene, Operator):
     """Turn off EEVEE's ray tracing, so that bounced light is counted once. Its reflections and refractions go too"""
 
     bl_idname = "afterlight.ray_tracing_off"
@@ -60,12 +60,4 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
 
 CLASSES = (AFTERLIGHT_OT_repair, AFTERLIGHT_OT_ray_tracing_off, AFTERLIGHT_OT_preset_add)
 
-
-def register():
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

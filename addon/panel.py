@@ -52,9 +52,8 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
         layout, settings = self.layout, context.scene.afterlight
         layout.use_property_split, layout.use_property_decorate = True, True
         if settings.enabled or wiring.is_helper(context.scene):
-            width = max(20, int(context.region.width / context.preferences.system.ui_scale / 7))
             for finding in checks.findings(context.scene):
-                _draw_finding(layout, finding, width)
+                _draw_finding(layout, finding, context)
         column = layout.column()
         column.active = settings.enabled
         column.prop(settings, "strength")
@@ -88,24 +87,24 @@ class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
 
     def draw(self, context):
         layout = self.layout
-        width = max(20, int(context.region.width / context.preferences.system.ui_scale / 7))
         if context.scene.afterlight.report:
-            _draw_text(layout, context.scene.afterlight.report, "ERROR", width)
+            _draw_text(layout, context.scene.afterlight.report, "ERROR", context)
         for stage, seconds in status.stages(context.scene).items():
             row = layout.row()
             row.label(text=stage.replace("_", " ").capitalize())
             row.label(text=f"{seconds:.2f} s")
 
 
-def _draw_finding(layout, finding, width):
+def _draw_finding(layout, finding, context):
     box = layout.box()
-    _draw_text(box, finding.text, "ERROR" if finding.fatal else "INFO", width)
+    _draw_text(box, finding.text, "ERROR" if finding.fatal else "INFO", context)
     if finding.operator:
         box.operator(finding.operator, text=finding.button)
 
 
-def _draw_text(layout, text, icon, width):
+def _draw_text(layout, text, icon, context):
     """Labels do not wrap by themselves."""
+    width = max(20, int(context.region.width / context.preferences.system.ui_scale / 7))
     column, line = layout.column(align=True), ""
     for word in (*text.split(), None):
         if word is None or len(line) + len(word) >= width:
@@ -117,14 +116,14 @@ def _draw_text(layout, text, icon, width):
 CLASSES = (AFTERLIGHT_MT_presets, AFTERLIGHT_PT_presets, AFTERLIGHT_PT_indirect_light, AFTERLIGHT_PT_sampling,
            AFTERLIGHT_PT_last_render)
 
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(CLASSES)
+
 
 def register():
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
+    _register_classes()
     bpy.utils.register_preset_path(FOLDER)
 
 
 def unregister():
     bpy.utils.unregister_preset_path(FOLDER)
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from . import light
-from .pipeline import status
+from .pipeline import status, wiring
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,6 @@ def light_settings(settings, frame):
 
 
 def _switch(settings, _context):
-    from .pipeline import wiring  # it needs the settings registered
     scene = settings.id_data
     if scene.library is None:
         (wiring.connect if settings.enabled else wiring.disconnect)(scene)

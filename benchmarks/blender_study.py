@@ -12,11 +12,12 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "benchmarks"))
 
-import extension  # noqa: E402
+import bench  # noqa: E402
+import session  # noqa: E402
 
-afterlight = extension.start()
+afterlight = session.enable_afterlight()
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
@@ -26,7 +27,6 @@ import OpenEXR  # noqa: E402
 def ray_tracing(scene):
     """Does any of EEVEE's settings keep its own bounce out of the pass that we read?"""
     passes, eevee, layer = afterlight.addon.pipeline.passes, scene.eevee, scene.view_layers[0]
-    scene.render.resolution_x, scene.render.resolution_y = 160, 90
     eevee.taa_render_samples = 16
 
     def mean():
@@ -69,12 +69,7 @@ def files(scene):
 
 
 def main():
-    bpy.ops.wm.open_mainfile(filepath=str(ROOT / "sample_blends" / "cornell_box.blend"), load_ui=False)
-    scene = bpy.data.scenes["cornell_box"]
-    scene.afterlight.enabled = False
-    layer = scene.view_layers[0]
-    for _, switch, _, _ in afterlight.addon.pipeline.passes.PASSES:
-        setattr(layer, switch, True)
+    scene = bench.open_scene(ROOT / "sample_blends" / "cornell_box.blend", (160, 90), afterlight)
     ray_tracing(scene)
     files(scene)
 

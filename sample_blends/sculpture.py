@@ -41,7 +41,6 @@ def _knot(along=200, around=20):
     other = np.cross(tangent, side)
 
     phi = np.linspace(0, 2 * pi, around, endpoint=False)
-    turn = phi[None, :] + 2 * t[:, None]
     width = 0.125 + 0.030 * np.cos(3 * t + 0.6)
     oval = np.stack([1.35 * np.cos(phi), 0.70 * np.sin(phi)])
     a = width[:, None] * (np.cos(2 * t)[:, None] * oval[0] - np.sin(2 * t)[:, None] * oval[1])

@@ -26,6 +26,16 @@ bool is_inside(ivec2 texel, ivec2 size)
   return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));
 }
 
+// Where a pixel lies in EEVEE's passes, which have their top row first.
+ivec2 pass_texel(ivec2 pixel)
+{
+  return ivec2(pixel.x, parameters.frame.y - 1 - pixel.y);
+}
+
+// Three channels of a pass, each a texture of its own; a macro, because samplers cannot be handed on everywhere.
+#define FETCH_PASS(first, second, third, texel) \
+  vec3(texelFetch(first, texel, 0).r, texelFetch(second, texel, 0).r, texelFetch(third, texel, 0).r)
+
 vec3 direction(vec3 v)
 {
   return v / max(length(v), 1e-30);

@@ -17,9 +17,6 @@ void main()
   // Without visibility, surfaces behind one another can cover the hemisphere more than once (F > 1). Dividing by F
   // then keeps the white furnace: no point receives more than pi L.
   vec3 irradiance = received.rgb / max(received.a, 1.0);
-  ivec2 source = ivec2(pixel.x, parameters.frame.y - 1 - pixel.y);
-  vec3 albedo = vec3(texelFetch(color_r, source, 0).r,
-                     texelFetch(color_g, source, 0).r,
-                     texelFetch(color_b, source, 0).r);
+  vec3 albedo = FETCH_PASS(color_r, color_g, color_b, pass_texel(pixel));
   imageStore(indirect, pixel, vec4(parameters.output_scale.x * albedo * irradiance / PI, 1.0));
 }

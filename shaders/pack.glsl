@@ -8,11 +8,6 @@ ivec2 frame_size()
   return parameters.frame.xy;
 }
 
-ivec2 pass_texel(ivec2 pixel)
-{
-  return ivec2(pixel.x, parameters.frame.y - 1 - pixel.y);
-}
-
 bool is_surface(float depth)
 {
   return is_finite(depth) && depth > 0.0 && depth < FARTHEST;
@@ -82,18 +77,10 @@ void main()
     }
     ivec2 source = pass_texel(pixel);
     float depth = texelFetch(depth_pass, source, 0).r;
-    vec3 world = vec3(texelFetch(normal_x, source, 0).r,
-                      texelFetch(normal_y, source, 0).r,
-                      texelFetch(normal_z, source, 0).r);
-    vec3 albedo = vec3(texelFetch(color_r, source, 0).r,
-                       texelFetch(color_g, source, 0).r,
-                       texelFetch(color_b, source, 0).r);
-    vec3 direct = vec3(texelFetch(direct_r, source, 0).r,
-                       texelFetch(direct_g, source, 0).r,
-                       texelFetch(direct_b, source, 0).r);
-    vec3 emission = vec3(texelFetch(emission_r, source, 0).r,
-                         texelFetch(emission_g, source, 0).r,
-                         texelFetch(emission_b, source, 0).r);
+    vec3 world = FETCH_PASS(normal_x, normal_y, normal_z, source);
+    vec3 albedo = FETCH_PASS(color_r, color_g, color_b, source);
+    vec3 direct = FETCH_PASS(direct_r, direct_g, direct_b, source);
+    vec3 emission = FETCH_PASS(emission_r, emission_g, emission_b, source);
     vec3 radiance = direct * albedo + emission;
     bool sound = is_surface(depth) && is_finite(world) && is_finite(albedo) && is_finite(direct) &&
                  is_finite(emission) && is_finite(radiance);

@@ -2,9 +2,7 @@
 """What the tests of the light share: the package under test, synthetic frames, and one frame that EEVEE renders."""
 
 import importlib
-import tempfile
 from functools import cache
-from pathlib import Path
 
 import bpy  # before gpu, which exists only once bpy is in
 import gpu
@@ -12,6 +10,7 @@ import numpy as np
 import pytest
 
 import reference
+import scenes
 
 BACKGROUND = np.float32(1e10)
 ROTATION_LOOKING_DOWN_MINUS_Z = np.eye(3)
@@ -87,12 +86,9 @@ def build_box_scene(width, height, samples):
     scene = bpy.context.scene
 
     def material(name, color, emission=0.0):
-        made = bpy.data.materials.new(name)
-        made.use_nodes = True
+        made = scenes.matt(name, color)
         shader = made.node_tree.nodes["Principled BSDF"]
-        shader.inputs["Base Color"].default_value = (*color, 1)
         shader.inputs["Roughness"].default_value = 1.0
-        shader.inputs["Specular IOR Level"].default_value = 0.0
         shader.inputs["Emission Color"].default_value = (*color, 1)
         shader.inputs["Emission Strength"].default_value = emission
         return made
@@ -129,36 +125,23 @@ def build_box_scene(width, height, samples):
     scene.render.engine = "BLENDER_EEVEE"
     scene.eevee.taa_render_samples = samples
     scene.render.resolution_x, scene.render.resolution_y = width, height
-    layer = scene.view_layers[0]
-    for flag in ("z", "normal", "diffuse_color", "diffuse_direct", "emit"):
-        setattr(layer, f"use_pass_{flag}", True)
     return scene
 
 
 @cache
 def rendered_box(light, width=160, height=90, samples=16):
     """(Passes, Camera) of the box scene as EEVEE renders it."""
-    import OpenEXR
-
+    passes = importlib.import_module(f"{light.__package__.rpartition('.')[0]}.pipeline.passes")
     scene = build_box_scene(width, height, samples)
-    settings = scene.render.image_settings
-    settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
-    with tempfile.TemporaryDirectory() as folder:
-        bpy.ops.render.render()
-        path = str(Path(folder, "box.exr"))
-        bpy.data.images["Render Result"].save_render(path, scene=scene)
-        channels = {name.split(".", 1)[1]: channel.pixels
-                    for part in OpenEXR.File(path, separate_channels=True).parts
-                    for name, channel in part.channels.items() if "." in name}
-    triple = lambda name, axes: tuple(np.ascontiguousarray(channels[f"{name}.{a}"]) for a in axes)
-    passes = light.Passes(np.ascontiguousarray(channels["Depth.Z"]), triple("Normal", "XYZ"),
-                          triple("Diffuse Color", "RGB"), triple("Diffuse Direct", "RGB"),
-                          triple("Emission", "RGB"))
-    camera = scene.camera
-    rotation = np.array(camera.matrix_world.to_3x3().normalized()).T
-    fov = 2 * np.arctan(camera.data.sensor_width / 2 / camera.data.lens)
-    return passes, camera_for(light, width, height, fov_x=fov, rotation=rotation)
+    layer = scene.view_layers[0]
+    for _, switch, _, _ in passes.PASSES:
+        setattr(layer, switch, True)
+    bpy.ops.render.render()
+    path = passes.save(scene)
+    rendered = passes.load(path, layer.name, passes.window(scene)[0])
+    passes.discard(path)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return rendered, passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
 
 
 def level_arrays(level):

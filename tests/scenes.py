@@ -120,14 +120,19 @@ def layered_tree(scene):
 TREES = {"none": lambda scene: None, "simple": simple_tree, "nested": nested_tree, "layered": layered_tree}
 
 
+def set_format(scene, file_format="OPEN_EXR"):
+    """The scene's output format; EXR uncompressed, 32 bit."""
+    settings = scene.render.image_settings
+    settings.media_type = "MULTI_LAYER_IMAGE" if file_format == "OPEN_EXR_MULTILAYER" else "IMAGE"
+    settings.file_format = file_format
+    if "EXR" in file_format:
+        settings.color_depth, settings.exr_codec = "32", "NONE"
+
+
 def render(scene, path, file_format="OPEN_EXR"):
     """Render `scene` to `path`, with the format given or, for None, the scene's own."""
     if file_format:
-        settings = scene.render.image_settings
-        settings.media_type = "MULTI_LAYER_IMAGE" if file_format == "OPEN_EXR_MULTILAYER" else "IMAGE"
-        settings.file_format = file_format
-        if "EXR" in file_format:
-            settings.color_depth, settings.exr_codec = "32", "NONE"
+        set_format(scene, file_format)
     scene.render.filepath = str(path)
     bpy.ops.render.render(write_still=True, scene=scene.name)
     return path

@@ -8,7 +8,7 @@ import sys
 import bpy
 import numpy as np
 import pytest
-from scenes import box, differences, read_rgb, render, written_down
+from scenes import box, differences, read_rgb, render, set_format, written_down
 
 
 @pytest.fixture
@@ -30,8 +30,7 @@ def refuse(scene, tmp_path, capfd):
     """Render; assert that the picture comes without light, with a message that holds `words`, and all is as before."""
     def check(*words, picture=None):
         scene.render.filepath = str(tmp_path / "picture.exr")
-        scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
-        scene.render.image_settings.exr_codec = "NONE"
+        set_format(scene)
         before = written_down()
         before.pop("images")
         capfd.readouterr()

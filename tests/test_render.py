@@ -4,7 +4,8 @@
 import bpy
 import numpy as np
 import pytest
-from scenes import SIZE, TREES, box, differences, layered_tree, put, read, read_rgb, render, simple_tree, written_down
+from scenes import (SIZE, TREES, box, differences, layered_tree, put, read, read_rgb, render, set_format, simple_tree,
+                    written_down)
 
 RED, GREEN = 0, 1
 
@@ -67,12 +68,6 @@ def lit_and_plain(scene, folder):
     return lit, plain
 
 
-def output_as_lit_and_plain_sets_it(scene):
-    """So that `unchanged` sees no change that is the test's own."""
-    image = scene.render.image_settings
-    image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR", "32", "NONE"
-
-
 @pytest.mark.parametrize("kind", TREES)
 def test_every_kind_of_compositor_gets_the_light(scene, tmp_path, unchanged, kind):
     TREES[kind](scene)
@@ -80,7 +75,7 @@ def test_every_kind_of_compositor_gets_the_light(scene, tmp_path, unchanged, kin
         front = bpy.data.collections.new("Front")
         scene.collection.children.link(front)
         front.objects.link(bpy.data.objects.new("Ball", bpy.data.meshes.new("Ball")))
-    output_as_lit_and_plain_sets_it(scene)
+    set_format(scene)  # as lit_and_plain() does, so that `unchanged` sees no change of the test's own
     unchanged()
     lit, plain = lit_and_plain(scene, tmp_path)
     gain = lit - plain
@@ -202,7 +197,7 @@ def test_render_border(scene, tmp_path, unchanged, seen, crop):
     render_settings.use_border, render_settings.use_crop_to_border = True, crop
     render_settings.border_min_x, render_settings.border_max_x = 0.26, 0.87
     render_settings.border_min_y, render_settings.border_max_y = 0.13, 0.71
-    output_as_lit_and_plain_sets_it(scene)
+    set_format(scene)
     unchanged()
     lit, plain = lit_and_plain(scene, tmp_path)
     unchanged()
@@ -248,7 +243,7 @@ def test_the_camera_is_understood(scene, tmp_path, unchanged, seen, kind):
     scene.render.resolution_percentage, scene.render.pixel_aspect_x = 75, 1.5
     for name, value in CAMERAS[kind].items():
         setattr(scene.camera.data, name, value)
-    output_as_lit_and_plain_sets_it(scene)
+    set_format(scene)
     unchanged()
     lit, plain = lit_and_plain(scene, tmp_path)
     unchanged()
@@ -284,7 +279,7 @@ def test_cameras_that_move_or_are_bound_to_markers(scene, tmp_path, seen):
 def test_film_transparent(scene, tmp_path, unchanged):
     bpy.data.objects["Wall.002"].hide_render = True
     scene.render.film_transparent = True
-    output_as_lit_and_plain_sets_it(scene)
+    set_format(scene)
     scene.render.image_settings.color_mode = "RGBA"
     unchanged()
     lit, plain = lit_and_plain(scene, tmp_path)

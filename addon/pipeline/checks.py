@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass
 
+import bpy
+
 from . import wiring
 
 
@@ -30,12 +32,12 @@ def findings(scene):
                              "Engine to EEVEE, or untick Indirect Light"))
     if camera is None:
         found.append(Finding("The scene has no camera. Add one (Add > Camera) and make it the scene's camera"))
-    elif camera.type == "CAMERA" and camera.data.type not in {"PERSP", "ORTHO"}:
-        found.append(Finding(f'The camera "{camera.name}" is panoramic. Set its Lens Type to Perspective or '
-                             "Orthographic"))
     elif camera.type != "CAMERA":
         found.append(Finding(f'The scene looks through "{camera.name}", which is no camera. Choose a camera in the '
                              "Scene properties"))
+    elif camera.data.type not in {"PERSP", "ORTHO"}:
+        found.append(Finding(f'The camera "{camera.name}" is panoramic. Set its Lens Type to Perspective or '
+                             "Orthographic"))
     if not any(layer.use for layer in scene.view_layers):
         found.append(Finding("No view layer is rendered. Tick Use for Rendering in the View Layer properties"))
     if render.use_multiview:
@@ -52,10 +54,17 @@ def findings(scene):
                              operator="afterlight.ray_tracing_off", button="Turn Off Ray Tracing"))
     if scene.afterlight.enabled:
         found += [Finding(text, operator="afterlight.repair", button="Repair") for text in wiring.faults(scene)]
-    if any(obj.type == "LIGHT_PROBE" and obj.data.type == "VOLUME" and not obj.hide_render for obj in scene.objects):
+    if _shows_probe_volume(scene):
         found.append(Finding("Light probe volumes hold bounced light once they are baked, and ours comes on top. "
                              "Disable them in renders, or free their bakes", fatal=False))
     return found
+
+
+def _shows_probe_volume(scene):
+    """The file's few light probes are asked first: scenes have many objects, and the panel asks at every redraw."""
+    return any(probe.type == "VOLUME" for probe in bpy.data.lightprobes) and any(
+        thing.type == "LIGHT_PROBE" and thing.data.type == "VOLUME" and not thing.hide_render
+        for thing in scene.objects)
 
 
 def counts_twice(scene):

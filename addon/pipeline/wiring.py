@@ -19,7 +19,7 @@ def connect(scene):
     _mirror_layers(scene, helper)
     tree = _tree_in_use(scene)
     for group in nodes.trees(tree):
-        if _owner(group, scene):
+        if _is_unshared(group, scene):
             nodes.retarget(group, scene, old, helper)
     for picture in nodes.pictures(tree, scene):
         nodes.splice(picture.id_data, picture, helper)
@@ -55,15 +55,15 @@ def follow(scene):
 def disconnect(scene):
     """Take out all that connect() put in and restore what was there; keep what the user has built on it."""
     settings, helper = scene.afterlight, scene.afterlight.helper
+    is_ours = helper is not None and source(helper) == scene
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for group in nodes.trees(tree):
             nodes.unsplice(group, scene, helper)
     _restore_tree(scene)
-    owner = helper and source(helper)
     for layer in scene.view_layers:
         _switch_passes_off(scene, layer)
     settings.helper = None
-    if helper is not None and owner == scene:
+    if is_ours:
         _remove_helper(helper)
 
 
@@ -160,7 +160,7 @@ def _mirror_layers(scene, helper):
         helper.view_layers.new(name)
 
 
-def _owner(tree, scene):
+def _is_unshared(tree, scene):
     """Whether no other enabled scene has this tree in its compositor."""
     return not any(tree in nodes.trees(other.compositing_node_group)
                    for other in bpy.data.scenes if other != scene and other.afterlight.enabled)
