@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Afterlight costs: each stage's time beside EEVEE's own, and memory.
 
-    .venv/bin/python benchmarks/bench.py [FILE.blend] [--size 1280x720] [--samples 16] [--presets draft,paper]
+    .venv/bin/python -m benchmarks.bench [FILE.blend] [--size 1280x720] [--samples 16] [--presets draft,paper]
 
 Prints a page of Markdown and writes it to docs/bench.md (or --output). Exit code 1 where a promised bound is missed."""
 
 import argparse
 import os
-import platform
 import resource
 import shlex
 import subprocess
@@ -18,8 +17,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "sample_blends"))
 
-import report  # noqa: E402
 import session  # noqa: E402
+
+from . import report  # noqa: E402
 
 PRESETS = ("draft", "paper", "production")
 OWN_FRAMES = 7               # for Afterlight's own time, at one EEVEE sample each: it does not depend on them
@@ -103,8 +103,8 @@ def measure_ray_tracing(scene, samples, rounds):
 def measure_memory(path, names):
     """{case: peak in MB}, each in a process of its own, because the peak of a process never falls."""
     def peak(case):
-        command = sys.executable, __file__, str(path), "--peak-of", case
-        run = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+        command = sys.executable, "-m", "benchmarks.bench", str(path), "--peak-of", case
+        run = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
         if run.returncode:
             sys.exit(f"The memory of '{case}' could not be measured; the lines above say why.")
         return float(run.stdout.splitlines()[-1])
@@ -137,12 +137,8 @@ def machine():
     """What the numbers were measured on, in a sentence."""
     import bpy
     import gpu
-    cpu = platform.processor()
-    if (info := Path("/proc/cpuinfo")).exists():
-        cpu = next((line.split(":")[1].strip() for line in info.read_text().splitlines()
-                    if line.startswith("model name")), cpu)
-    return (f"{cpu} ({os.cpu_count()} cores), GPU {gpu.platform.renderer_get()} ({gpu.platform.backend_type_get()}), "
-            f"Blender {bpy.app.version_string}")
+    return (f"{report.processor()} ({os.cpu_count()} cores), GPU {gpu.platform.renderer_get()} "
+            f"({gpu.platform.backend_type_get()}), Blender {bpy.app.version_string}")
 
 
 def measure(path, options, names):
@@ -158,7 +154,7 @@ def measure(path, options, names):
     tracing = measure_ray_tracing(scene, options.samples, options.rounds)
     return report.Measured(
         title=path.name, size=options.size, machine=machine(), memory=memory, memory_size=MEMORY_SIZE, presets=presets,
-        command=shlex.join([".venv/bin/python", "benchmarks/bench.py", *session.arguments()]), **own, **tracing)
+        command=shlex.join([".venv/bin/python", "-m", "benchmarks.bench", *session.arguments()]), **own, **tracing)
 
 
 def main():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What docs/blender.md says of EEVEE and of Blender's files, measured.
 
-    .venv/bin/python benchmarks/blender_study.py
+    .venv/bin/python -m benchmarks.blender_study
 
 Prints two tables: the mean of EEVEE's Diffuse Direct pass under its ray tracing settings, and the time to save and
 read all passes of a 1280x720 frame with one part a pass and with one part in all (medians of 5)."""
@@ -12,10 +12,11 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "benchmarks"))
+sys.path.insert(0, str(ROOT / "sample_blends"))
 
-import bench  # noqa: E402
 import session  # noqa: E402
+
+from . import bench  # noqa: E402
 
 afterlight = session.enable_afterlight()
 

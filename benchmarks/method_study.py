@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The measurements that decided the method, printed as the tables of docs/method.md.
 
-    .venv/bin/python benchmarks/method_study.py [radius] [samples] [bound] [upsampling]    three minutes for all
+    .venv/bin/python -m benchmarks.method_study [radius] [samples] [bound] [upsampling]    three minutes for all
 
 Frames: the box room of the tests as EEVEE renders it, 160 x 90 (radius, upsampling: against the float64 sum over all
 pairs of pixels, which is only affordable there) and 640 x 360 (samples), and a closed box traced exactly (bound).

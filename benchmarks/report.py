@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark's numbers as a page of Markdown, and whether they keep what is promised. No Blender is needed here."""
 
+import platform
 from dataclasses import dataclass, field
+from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
@@ -74,6 +76,15 @@ def added(without, having):
     return [after.wall - before.wall for before, after in zip(without, having, strict=True)]
 
 
+def processor():
+    """The name of this machine's processor."""
+    if (info := Path("/proc/cpuinfo")).exists():
+        for line in info.read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":")[1].strip()
+    return platform.processor()
+
+
 def verdicts(measured):
     """[(sentence, whether the bound holds)]."""
     tracing, found = measured.ray_tracing, []
@@ -121,7 +132,7 @@ def _stage_table(measured):
     first_gpu = sum(measured.first[name] for name in GPU_STAGES)
     rows.append(("**on the GPU**, upload to read back", f"{first_gpu:.3f}", *_cells(measured.gpu)))
     rows.append(("**all stages**", f"{sum(measured.first.values()):.3f}", *_cells(measured.sums)))
-    return _table(("stage", "first frame, s", "median, s", "smallest to largest"), rows)
+    return table(("stage", "first frame, s", "median, s", "smallest to largest"), rows)
 
 
 def _frame_table(measured):
@@ -134,7 +145,7 @@ def _frame_table(measured):
     tracing = [after.cpu - before.cpu for before, after in zip(measured.untraced, measured.traced, strict=True)]
     rows.insert(2, ("**what ray tracing adds**, pair by pair", *_cells(added(measured.untraced, measured.traced), 2),
                     f"{median(tracing):.2f}"))
-    return _table(("frame", "median, s", "smallest to largest", "processor, median, s"), rows)
+    return table(("frame", "median, s", "smallest to largest", "processor, median, s"), rows)
 
 
 def _presets(measured):
@@ -143,7 +154,7 @@ def _presets(measured):
     rows = [(name.title(), preset.start, preset.samples, preset.radius, f"{preset.stages['gather']:.2f}",
              f"{sum(preset.stages.values()):.2f}") for name, preset in measured.presets.items()]
     return ["## Presets", "One frame each.",
-            _table(("preset", "start", "samples", "radius", "gather, s", "all stages, s"), rows)]
+            table(("preset", "start", "samples", "radius", "gather, s", "all stages, s"), rows)]
 
 
 def _memory(measured):
@@ -155,7 +166,7 @@ def _memory(measured):
     return ["## Memory",
             f"Peak resident memory of a process that renders three frames at {_size(measured.memory_size)}, one "
             "process a case. On a software GPU, textures are part of it. Blender itself grows up to the third frame.",
-            _table(("case", "peak, MB", "above EEVEE alone, MB"), rows)]
+            table(("case", "peak, MB", "above EEVEE alone, MB"), rows)]
 
 
 def _size(size):
@@ -171,7 +182,7 @@ def _spread(seconds):
     return f"{middle} ({ends})"
 
 
-def _table(heading, rows):
-    """A Markdown table: the first column text, the others numbers."""
-    lines = [heading, ["---"] + ["---:"] * (len(heading) - 1), *rows]
+def table(heading, rows, text=1):
+    """A Markdown table: the first column, or as many as `text` says, text; the others numbers."""
+    lines = [heading, ["---"] * text + ["---:"] * (len(heading) - text), *rows]
     return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
