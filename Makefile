@@ -19,11 +19,14 @@ demo: package    ## before and after pictures of a sample scene; make demo DEMO=
 samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
 
-bench: package   ## time of each stage beside EEVEE's, and memory
-	$(python) benchmarks/bench.py
+bench: package   ## what it costs: beside EEVEE, by polygons and lights, and alone on the GPU; an hour at most
+	@status=0; for part in bench constant_cost speed; do $(python) -m benchmarks.$$part || status=1; done; exit $$status
+
+speed: setup     ## the last of these: the light alone, pass by pass, on this machine's GPU
+	$(python) -m benchmarks.speed
 
 clean:           ## remove what was made, but for .venv and the downloaded wheels
 	rm -rf dist build .pytest_cache .hypothesis
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test package demo samples bench clean
+.PHONY: help setup test package demo samples bench speed clean

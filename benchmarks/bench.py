@@ -21,6 +21,7 @@ import session  # noqa: E402
 
 from . import report  # noqa: E402
 
+PAGE = ROOT / "docs" / "bench.md"
 PRESETS = ("draft", "paper", "production")
 OWN_FRAMES = 7               # for Afterlight's own time, at one EEVEE sample each: it does not depend on them
 MEMORY_SIZE = 1920, 1080
@@ -157,11 +158,13 @@ def measure(path, options, names):
         command=shlex.join([".venv/bin/python", "-m", "benchmarks.bench", *session.arguments()]), **own, **tracing)
 
 
-def main():
-    def size(text):
-        width, height = map(int, text.split("x"))
-        return width, height
+def size(text):
+    """(width, height) from a command line's WxH."""
+    width, height = map(int, text.split("x"))
+    return width, height
 
+
+def main():
     parser = argparse.ArgumentParser(description="Afterlight's time and memory beside EEVEE's.")
     parser.add_argument("blend", nargs="?", type=Path, default=ROOT / "sample_blends" / "cornell_box.blend",
                         help="the scene to render; the Cornell box")
@@ -169,7 +172,7 @@ def main():
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's, for the cost of its ray tracing; 16")
     parser.add_argument("--rounds", type=int, default=3, help="frames with and without ray tracing; 3 of each")
     parser.add_argument("--presets", default=",".join(PRESETS), help="those to measure as well; all of them")
-    parser.add_argument("--output", type=Path, default=ROOT / "docs" / "bench.md", help="docs/bench.md")
+    parser.add_argument("--output", type=Path, default=PAGE, help="docs/bench.md")
     parser.add_argument("--peak-of", help=argparse.SUPPRESS)
     options = parser.parse_args(session.arguments())
     path, names = options.blend.resolve(), [name for name in options.presets.split(",") if name]
@@ -182,8 +185,7 @@ def main():
 
     measured = measure(path, options, names)
     page = report.page(measured)
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    options.output.write_text(page)
+    report.write(options.output, page)
     print(page)
     return int(not all(kept for _, kept in report.verdicts(measured)))
 

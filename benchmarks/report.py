@@ -11,6 +11,7 @@ GPU_STAGES = ("upload", "pyramid", "gather", "upsample", "read_back")
 WHOLE_BOUND = 1.0            # Afterlight's seconds / those that EEVEE's ray tracing adds to a frame
 GPU_BOUND = 0.1              # the same for the part on the GPU
 MEMORY_BOUND = 700           # MB above EEVEE alone
+CONSTANT_COST = "## Constant cost"  # the page's last part, by benchmarks.constant_cost
 
 
 class Frame(NamedTuple):
@@ -124,6 +125,15 @@ def page(measured):
         "turns.",
         _frame_table(measured),
         *_presets(measured), *_memory(measured)]) + "\n"
+
+
+def write(path, page=None, constant_cost=None):
+    """Write one of the two parts of a file: the page as page() gives it, or its last part from the heading CONSTANT_COST
+    on. The other part stays as it is."""
+    before, heading, after = path.read_text().partition(CONSTANT_COST) if path.exists() else ("", "", "")
+    parts = before if page is None else page, heading + after if constant_cost is None else constant_cost
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(part.strip("\n") + "\n" for part in parts if part))
 
 
 def _stage_table(measured):

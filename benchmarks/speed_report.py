@@ -35,8 +35,8 @@ def verdict(found):
     """(sentence, whether the aim is kept)."""
     seconds, floor = median(_frame(found)["gpu"]), sum(stage["seconds"] for stage in found["floor"])
     ratio = seconds / floor
-    return (f"{'Kept' if ratio <= AIM else 'MISSED'}: a frame at {setting(_frame(found))} takes {_ms(seconds)} ms on the "
-            f"GPU, {ratio:.2f} times its floor of {_ms(floor)} ms. Aim: at most {AIM:g} times.", ratio <= AIM)
+    return (f"{'Kept' if ratio <= AIM else 'MISSED'}: a frame at {setting(_frame(found))} takes {_ms(seconds)} ms on "
+            f"the GPU, {ratio:.2f} times its floor of {_ms(floor)} ms. Aim: at most {AIM:g} times.", ratio <= AIM)
 
 
 def write(page, files=()):
@@ -89,7 +89,8 @@ def _passes(found):
     rows = [(setting(run), name, entry["dispatches"], _ms(median(entry["seconds"])), _range(entry["seconds"]))
             for run in found["paper"] for name, entry in run["passes"].items()]
     frame = _frame(found)
-    return [f"{_size(frame)}, radius {frame['radius']}; {len(frame['gpu'])} frames of each setting after one to warm up.",
+    return [f"{_size(frame)}, radius {frame['radius']}; {len(frame['gpu'])} frames of each setting, after one to warm "
+            "up.",
             table(("setting", "pass", "dispatches", "median, ms", "smallest to largest, ms"), rows, text=2),
             "All passes, and the whole of `gather_indirect()` on the clock, arrays in and an array out: that adds "
             "the transfers to and from the GPU and the host's own work.",
