@@ -33,14 +33,13 @@ def settings(start=1, samples=0, radius=16, seed=0):
 
 def base_total(passes, camera, chosen):
     """(H, W, 4): irradiance and form factors at the base, and the texture samples spent per base texel."""
-    levels = light.pyramid(light.pack(light.upload(passes), camera, chosen.start)[1], chosen.radius)
-    total, spent = None, 0
-    for index in range(len(levels) - 1, -1, -1):
-        own = light.gather(levels[index], index, chosen)
+    pyramid = fixtures.pyramid_of(light, passes, camera, chosen)
+    spent = 0
+    for index, (_, _, width, height) in enumerate(pyramid.boxes):
         region = len(light.pipeline.offsets(chosen.radius, index == 0))
-        spent += np.prod(levels[index].size) * light.pipeline.samples_at(index, chosen.samples, region)
-        total = own if total is None else light.upsample(levels[index], own, levels[index + 1], total)
-    return np.array(total.read(), np.float64), spent / np.prod(levels[0].size)
+        spent += width * height * light.pipeline.samples_at(index, chosen.samples, region)
+    total = light.upsample(pyramid, light.gather(pyramid, chosen))
+    return np.array(total.read(), np.float64), spent / np.prod(pyramid.boxes[0][2:])
 
 
 def same_at_each_level(level, samples, texels):
@@ -129,9 +128,7 @@ def upsampling_table():
         reference.FLATNESS_SHARPNESS, reference.NORMAL_POWER, reference.LEAST_WEIGHT = flatness, power, least
         cells = []
         for start, guide, levels, own in cases:
-            total = own[-1]
-            for k in range(len(levels) - 2, -1, -1):
-                total = reference.upsample(levels[k], own[k], levels[k + 1], total)
+            total = reference.upsample(levels, own)
             picture = reference.composite(passes, guide, levels[0], total, camera, start, 1.0)[..., :3]
             cells.append("{:.3f}, {:.3f}".format(*compare(picture, true)))
         print(f"| {flatness} | {power} | {least} | {' | '.join(cells)} |", flush=True)

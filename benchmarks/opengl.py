@@ -56,7 +56,7 @@ def timed(light):
     seconds, running, plain = {}, [], light.device.dispatch
 
     def dispatch(name, *arguments, **options):
-        if name == "probe":
+        if name.startswith("probe"):
             return plain(name, *arguments, **options)
         with _timer() as timer:
             plain(name, *arguments, **options)

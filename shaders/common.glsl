@@ -10,15 +10,9 @@ bool is_finite(float x)
   return (floatBitsToUint(x) & 0x7F800000u) != 0x7F800000u;
 }
 
-bool is_finite(vec3 v)
+bool is_surface(float depth)
 {
-  return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
-}
-
-// The texel of this thread. Long passes are dispatched in bands of rows, the first of which is parameters.band.x.
-ivec2 this_texel()
-{
-  return ivec2(gl_GlobalInvocationID.xy) + ivec2(0, parameters.band.x);
+  return is_finite(depth) && depth > 0.0 && depth < FARTHEST;
 }
 
 bool is_inside(ivec2 texel, ivec2 size)
@@ -26,17 +20,24 @@ bool is_inside(ivec2 texel, ivec2 size)
   return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));
 }
 
-// Where a pixel lies in EEVEE's passes, which have their top row first.
-ivec2 pass_texel(ivec2 pixel)
-{
-  return ivec2(pixel.x, parameters.frame.y - 1 - pixel.y);
-}
-
-// Three channels of a pass, each a texture of its own; a macro, because samplers cannot be handed on everywhere.
-#define FETCH_PASS(first, second, third, texel) \
-  vec3(texelFetch(first, texel, 0).r, texelFetch(second, texel, 0).r, texelFetch(third, texel, 0).r)
-
 vec3 direction(vec3 v)
 {
-  return v / max(length(v), 1e-30);
+  return v * inversesqrt(max(dot(v, v), 1e-37));
+}
+
+// Level of the pyramid: all levels lie side by side in one texture.
+ivec2 level_origin(int level)
+{
+  return parameters.levels[level].xy;
+}
+
+ivec2 level_size(int level)
+{
+  return parameters.levels[level].zw;
+}
+
+// EEVEE's passes are one texture a channel, four neighbouring pixels of a row to the texel, top row first.
+ivec2 pass_texel(int quad, int row)
+{
+  return ivec2(quad, parameters.frame.y - 1 - row);
 }

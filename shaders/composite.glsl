@@ -1,22 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Composite: from the base's irradiance to full resolution, times the reflectance: albedo / pi.
+// Composite: from the base's irradiance to full resolution, times the reflectance: albedo / pi. One thread makes four
+// neighbouring pixels and writes their red, green and blue one after the other, as Blender wants a pass.
 
 void main()
 {
-  ivec2 pixel = this_texel();
-  if (!is_inside(pixel, imageSize(indirect))) {
+  int quad = int(gl_GlobalInvocationID.x);
+  int row = int(gl_GlobalInvocationID.y);
+  if (4 * quad >= parameters.frame.x || row >= parameters.frame.y) {
     return;
   }
-  vec4 surface = texelFetch(guide, pixel, 0);
-  if (surface.w <= 0.0) {
-    imageStore(indirect, pixel, vec4(0.0));
-    return;
+  ivec2 source = pass_texel(quad, row);
+  vec4 depth = texelFetch(depth_pass, source, 0);
+  Quad world = Quad(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
+  Quad albedo = Quad(texelFetch(color_r, source, 0), texelFetch(color_g, source, 0), texelFetch(color_b, source, 0));
+  vec4 columns = float(4 * quad) + vec4(0.5, 1.5, 2.5, 3.5);
+  Quad place = view_place(columns, float(row) + 0.5, depth);
+  Quad normal = view_normal(world);
+
+  // The base texels between whose centres the pixels lie; a pixel is interpolated between its own four of them. With one
+  // texel a pixel each lies on the centre of its own.
+  float start = float(parameters.frame.z);
+  ivec2 taps = parameters.frame.z == 4 ? ivec2(3, 2) : parameters.frame.z == 2 ? ivec2(4, 2) : ivec2(4, 1);
+  vec4 across = columns / start - 0.5;
+  float up = (float(row) + 0.5) / start - 0.5;
+  ivec2 corner = ivec2(floor(vec2(across.x, up)));
+  vec4 weights = vec4(0.0), bound = weights;
+  Quad sum = Quad(weights, weights, weights);
+  for (int k = 0; k < taps.x * taps.y; k++) {
+    ivec2 tap = corner + (k < taps.x ? ivec2(k, 0) : ivec2(k - taps.x, 1));
+    vec4 linear = max(1.0 - abs(across - float(tap.x)), 0.0) * max(1.0 - abs(up - float(tap.y)), 0.0);
+    if (!is_inside(tap, level_size(0)) || dot(linear, linear) == 0.0) {
+      continue;
+    }
+    Surfel surfel = unpack_surfel(texelFetch(surfels, tap, 0), tap, 0);
+    if (surfel.area <= 0.0) {
+      continue;
+    }
+    vec3 facing = direction(surfel.vector_area);
+    vec4 received = texelFetch(total, tap, 0);
+    vec4 height = normal.x * (surfel.place.x - place.x) + normal.y * (surfel.place.y - place.y) +
+                  normal.z * (surfel.place.z - place.z);
+    vec4 cosine = normal.x * facing.x + normal.y * facing.y + normal.z * facing.z;
+    vec4 weight = linear * bilateral_weight(height, cosine, surfel.area);
+    weights += weight;
+    sum.x += weight * received.r;
+    sum.y += weight * received.g;
+    sum.z += weight * received.b;
+    bound += weight * received.a;
   }
-  vec2 centre = vec2(pixel) + 0.5;
-  vec4 received = bilateral(centre / float(parameters.frame.z), view_place(centre, surface.w), surface.xyz);
   // Without visibility, surfaces behind one another can cover the hemisphere more than once (F > 1). Dividing by F
   // then keeps the white furnace: no point receives more than pi L.
-  vec3 irradiance = received.rgb / max(received.a, 1.0);
-  vec3 albedo = FETCH_PASS(color_r, color_g, color_b, pass_texel(pixel));
-  imageStore(indirect, pixel, vec4(parameters.output_scale.x * albedo * irradiance / PI, 1.0));
+  vec4 share = parameters.output_scale.x / PI / max(max(bound, weights), vec4(1e-37));
+  vec4 red = share * sum.x * albedo.x, green = share * sum.y * albedo.y, blue = share * sum.z * albedo.z;
+  for (int k = 0; k < 4; k++) {
+    // Background, and pixels with NaN or infinity: no light.
+    if (!is_surface(depth[k]) || !is_finite(red[k] + green[k] + blue[k])) {
+      red[k] = green[k] = blue[k] = 0.0;
+    }
+  }
+  imageStore(indirect_out, ivec2(3 * quad, row), vec4(red.x, green.x, blue.x, red.y));
+  imageStore(indirect_out, ivec2(3 * quad + 1, row), vec4(green.y, blue.y, red.z, green.z));
+  imageStore(indirect_out, ivec2(3 * quad + 2, row), vec4(blue.z, red.w, green.w, blue.w));
 }

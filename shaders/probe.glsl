@@ -3,5 +3,5 @@
 
 void main()
 {
-  imageStore(probed, ivec2(0), texelFetch(source, ivec2(0), 0));
+  imageStore(probed_out, ivec2(0), vec4(texelFetch(SOURCE, ivec2(0), 0)));
 }

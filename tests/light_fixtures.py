@@ -144,34 +144,53 @@ def rendered_box(light, width=160, height=90, samples=16):
     return rendered, passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
 
 
-def level_arrays(level):
-    """A Level on the GPU as a reference.Level."""
-    radiance, place, vector_area = (np.array(image.read(), np.float64)
-                                    for image in (level.radiance, level.place, level.vector_area))
-    return reference.Level(radiance[..., :3], place[..., :3], place[..., 3], vector_area[..., :3])
+def pyramid_of(light, passes, camera, settings):
+    """The full pyramid of a frame, on the GPU."""
+    pyramid = light.pack(light.upload(passes), passes, camera, settings)
+    light.merge(pyramid)
+    return pyramid
 
 
-def level_textures(light, level):
-    """A reference.Level as a Level on the GPU."""
-    height, width = level.area.shape
-
-    def texture(*parts):
-        data = np.zeros((height, width, 4), np.float32)
-        channel = 0
-        for part in parts:
-            data[..., channel:channel + part.shape[-1]] = part
-            channel += part.shape[-1]
-        return gpu.types.GPUTexture((width, height), format="RGBA32F",
-                                    data=gpu.types.Buffer("FLOAT", data.size, data.ravel()))
-
-    return light.Level(texture(level.radiance), texture(level.place, level.area[..., None]),
-                       texture(level.vector_area))
+def level_of(image, pyramid, index):
+    """The part of an image, laid out as the pyramid is, that belongs to one level."""
+    x, y, width, height = pyramid.boxes[index]
+    return image[y:y + height, x:x + width]
 
 
-def in_rows(height, width, surfels):
-    """(place, area, vector_area) images filled row by row from (place, normal, area) triples; the rest is empty."""
-    flat = np.zeros((height * width, 7))
-    for row, (place, normal, area) in zip(flat, surfels):
-        row[:3], row[3], row[4:] = place, area, area * np.asarray(normal)
-    image = flat.reshape(height, width, 7)
-    return image[..., :3], image[..., 3], image[..., 4:]
+@cache
+def halves_shader():
+    info = gpu.types.GPUShaderCreateInfo()
+    info.sampler(0, "UINT_2D", "source")
+    info.image(0, "RGBA32F", "FLOAT_2D", "halves", qualifiers={"WRITE"})
+    info.local_group_size(8, 8, 1)
+    info.compute_source("""
+        void main()
+        {
+          ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(source, 0);
+          uvec4 bits = texelFetch(source, min(texel, size - 1), 0);
+          if (texel.x < size.x && texel.y < size.y) {
+            imageStore(halves, ivec2(2 * texel.x, texel.y), vec4(bits & 0xFFFFu));
+            imageStore(halves, ivec2(2 * texel.x + 1, texel.y), vec4(bits >> 16u));
+          }
+        }""")
+    return gpu.shader.create_from_info(info)
+
+
+def bits_of(texture):
+    """(H, W, 4) uint32 of a texture of integers. Blender reads textures as floats alone, so two make one integer."""
+    halves = gpu.types.GPUTexture((2 * texture.width, texture.height), format="RGBA32F")
+    shader = halves_shader()
+    shader.bind()
+    shader.uniform_sampler("source", texture)
+    shader.image("halves", halves)
+    gpu.compute.dispatch(shader, -(-texture.width // 8), -(-texture.height // 8), 1)
+    gpu.shader.unbind()
+    read = np.array(halves.read()).astype(np.uint32)
+    return read[:, 0::2] | read[:, 1::2] << 16
+
+
+def level_arrays(pyramid, camera, start):
+    """The levels of a pyramid on the GPU, each as a reference.Level."""
+    bits = bits_of(pyramid.surfels)
+    return [reference.unpack_surfel(level_of(bits, pyramid, index), camera, start << index)
+            for index in range(len(pyramid.boxes))]

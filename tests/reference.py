@@ -13,6 +13,9 @@ FARTHEST = 1e9
 NORMAL_POWER = 8
 FLATNESS_SHARPNESS = 16.0
 LEAST_WEIGHT = 1e-3
+DIRECTION_STEPS = np.array([1023, 1023, 511])
+RADIANCE_STEPS = np.array([1024, 1024, 512])
+LEAST_AREA = 2.0 ** -26
 
 
 @dataclass
@@ -86,8 +89,64 @@ def pack(passes, camera, start):
         light, place, area, area[..., None] * normal), start)
 
 
-def halve(level):
-    return _sum_blocks(level, 2)
+def footprint(camera, depth, step):
+    """Area on a plane across the view, m^2, of a texel of step x step pixels at a depth."""
+    area = step * step * abs(camera.scale[0] * camera.scale[1])
+    return area * np.ones_like(depth) if camera.orthographic else area * depth ** 2
+
+
+def pack_surfel(level, camera, step):
+    """(H, W, 4) uint32: the bits of a Level's surfels; step: pixels along the side of a texel."""
+    height, width = level.area.shape
+    surface = level.area > 0
+    depth = np.where(surface, -level.place[..., 2], 1)
+    ray = level.place[..., :2] / (1 if camera.orthographic else depth[..., None])
+    corner = np.stack(np.meshgrid(np.arange(width), np.arange(height)), -1)
+    within = (ray - camera.offset) / (np.asarray(camera.scale) * step) - corner
+    offset = np.clip(np.round(within * 128), 0, 127).astype(np.uint32)
+    area = np.clip(level.area / footprint(camera, depth, step), LEAST_AREA, 64)
+    area = np.minimum((_bits(area) - _bits(LEAST_AREA) + 0x200) >> 10, 0x3FFFF)
+    largest = np.abs(level.radiance).max(-1)
+    exponent = np.minimum((_bits(largest) >> 23) + 1, 254)
+    mantissa = level.radiance / 2.0 ** (exponent.astype(float)[..., None] - 127) * (exponent > 1)[..., None]
+    bits = np.stack([((_bits(depth) + 0x100) >> 9) << 10 | exponent, area << 14 | offset[..., 1] << 7 | offset[..., 0],
+                     _pack_signed(level.vector_area / np.maximum(level.area, 1e-300)[..., None], DIRECTION_STEPS),
+                     _pack_signed(mantissa, RADIANCE_STEPS)], -1)
+    return np.where(surface[..., None], bits, 0).astype(np.uint32)
+
+
+def unpack_surfel(bits, camera, step):
+    """The Level that (H, W, 4) uint32 stand for."""
+    height, width = bits.shape[:2]
+    x, y, z, w = (bits[..., k].astype(np.uint32) for k in range(4))
+    depth = ((x >> 10) << 9).view(np.float32).astype(np.float64)
+    within = np.stack([y & 0x7F, (y >> 7) & 0x7F], -1) / 128
+    corner = np.stack(np.meshgrid(np.arange(width), np.arange(height)), -1)
+    ray = np.asarray(camera.offset) + np.asarray(camera.scale) * step * (corner + within)
+    place = np.concatenate([ray if camera.orthographic else ray * depth[..., None], -depth[..., None]], -1)
+    area = (((y >> 14) << 10) + _bits(LEAST_AREA)).astype(np.uint32).view(np.float32).astype(np.float64)
+    area = np.where(depth > 0, area * footprint(camera, depth, step), 0)
+    scale = ((x & 0xFF) << 23).astype(np.uint32).view(np.float32).astype(np.float64)
+    return Level(scale[..., None] * _unpack_signed(w, RADIANCE_STEPS), place * (depth > 0)[..., None], area,
+                 area[..., None] * _unpack_signed(z, DIRECTION_STEPS))
+
+
+def _bits(values):
+    return np.asarray(values, np.float32).view(np.uint32).astype(np.int64)
+
+
+def _pack_signed(vectors, steps):
+    whole = (np.minimum(np.round(vectors * steps), DIRECTION_STEPS) + steps).astype(np.int64)
+    return whole[..., 0] | whole[..., 1] << 11 | whole[..., 2] << 22
+
+
+def _unpack_signed(bits, steps):
+    return np.stack([bits & 0x7FF, (bits >> 11) & 0x7FF, bits >> 22], -1) / steps - 1
+
+
+def merge(level, side=2):
+    """The level that sums side x side texels of this one."""
+    return _sum_blocks(level, side)
 
 
 def _sum_blocks(level, side):
@@ -108,7 +167,7 @@ def _sum_blocks(level, side):
 def pyramid(base, radius):
     levels = [base]
     while np.hypot(*levels[-1].area.shape) > radius:
-        levels.append(halve(levels[-1]))
+        levels.append(merge(levels[-1]))
     return levels
 
 
@@ -188,26 +247,27 @@ def bilateral(coarse, total, position, receiver, normal):
     return result / np.maximum(weights, 1e-300)[..., None]
 
 
-def upsample(fine, own, coarse, coarse_total):
-    position = pixel_centres(*fine.area.shape) / 2
-    upsampled = bilateral(coarse, coarse_total, position, fine.place, direction(fine.vector_area))
-    return own + np.where(fine.area[..., None] > 0, upsampled, 0)
+def upsample(levels, own):
+    """(H, W, 4) at the base: what each level gathered, coarser ones interpolated along the base's surface."""
+    base = levels[0]
+    total = own[0].copy()
+    for index in range(1, len(levels)):
+        position = pixel_centres(*base.area.shape) / 2 ** index
+        upsampled = bilateral(levels[index], own[index], position, base.place, direction(base.vector_area))
+        total += np.where(base.area[..., None] > 0, upsampled, 0)
+    return total
 
 
 def hierarchical_sum(levels, radius):
     """(H, W, 4) at the base: every level's exhaustive gather, upsampled and summed."""
-    total = gather(levels[-1], len(levels) == 1, radius)
-    for k in range(len(levels) - 2, -1, -1):
-        total = upsample(levels[k], gather(levels[k], k == 0, radius), levels[k + 1], total)
-    return total
+    return upsample(levels, [gather(level, index == 0, radius) for index, level in enumerate(levels)])
 
 
 def composite(passes, guide, base, total, camera, start, strength):
-    """(H, W, 4): strength * albedo / pi * E / max(1, F); alpha 1 on surfaces."""
+    """(H, W, 3): strength * albedo / pi * E / max(1, F)."""
     centres = pixel_centres(*guide.shape[:2])
     received = bilateral(base, total, centres / start, view_place(camera, centres, guide[..., 3]), guide[..., :3])
     irradiance = received[..., :3] / np.maximum(received[..., 3:], 1)
     with np.errstate(invalid="ignore"):
         indirect = strength * bottom_first(passes.diffuse_color) * irradiance / np.pi
-    surface = guide[..., 3:] > 0
-    return np.where(surface, np.concatenate([indirect, np.ones_like(surface, float)], -1), 0)
+    return np.where(guide[..., 3:] > 0, indirect, 0)

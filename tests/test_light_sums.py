@@ -17,11 +17,8 @@ def settings(light, **changes):
 
 def base_total(light, passes, camera, chosen):
     """(H, W, 4) at the base: irradiance and form factors, all levels summed, before the furnace's bound."""
-    levels = light.pyramid(light.pack(light.upload(passes), camera, chosen.start)[1], chosen.radius)
-    total = light.gather(levels[-1], len(levels) - 1, chosen)
-    for index in range(len(levels) - 2, -1, -1):
-        total = light.upsample(levels[index], light.gather(levels[index], index, chosen), levels[index + 1], total)
-    return np.array(total.read(), np.float64)
+    pyramid = fixtures.pyramid_of(light, passes, camera, chosen)
+    return np.array(light.upsample(pyramid, light.gather(pyramid, chosen)).read(), np.float64)
 
 
 @pytest.fixture(scope="module", params=["random", "eevee"])
@@ -34,41 +31,76 @@ def frame(request, light):
             fixtures.camera_for(light, 61, 35, shift=(0.1, -0.2), rotation=turned))
 
 
+def agree(image, expected, relative=1e-4):
+    assert np.abs(np.asarray(image) - expected).max() <= relative * np.abs(expected).max()
+
+
 @pytest.mark.parametrize("start", [1, 2, 4])
 def test_every_stage_agrees_with_float64(light, frame, start):
-    """Pack, halve, gather, upsample and composite, each fed by the stage before it, to 1e-4 of its largest value."""
+    """Gather, upsample and composite, each fed by the stage before it, to 1e-4 of its largest value."""
     passes, camera = frame
-    radius = 8
-
-    def agree(image, expected):
-        assert np.abs(np.asarray(image) - expected).max() <= 1e-4 * np.abs(expected).max()
-
+    chosen = settings(light, start=start, radius=8, strength=0.7)
     channels = light.upload(passes)
-    guide, base = light.pack(channels, camera, start)
-    expected_guide, expected_base = reference.pack(passes, camera, start)
-    agree(guide.read(), expected_guide)
-    levels = light.pyramid(base, radius)
-    expected_levels = reference.pyramid(expected_base, radius)
-    assert len(levels) == len(expected_levels) > 2
-    for level, expected in zip(levels, expected_levels):
-        for name, image in vars(fixtures.level_arrays(level)).items():
-            agree(image, getattr(expected, name))
+    pyramid = light.pack(channels, passes, camera, chosen)
+    light.merge(pyramid)
+    levels = fixtures.level_arrays(pyramid, camera, start)
+    assert len(levels) > 2
 
-    chosen = settings(light, start=start, radius=radius, strength=0.7)
-    total, expected_total = None, None
-    for index in range(len(levels) - 1, -1, -1):
-        own = light.gather(levels[index], index, chosen)
-        expected_own = reference.gather(expected_levels[index], index == 0, radius)
-        agree(own.read(), expected_own)
-        if total is not None:
-            own = light.upsample(levels[index], own, levels[index + 1], total)
-            expected_own = reference.upsample(expected_levels[index], expected_own, expected_levels[index + 1],
-                                              expected_total)
-            agree(own.read(), expected_own)
-        total, expected_total = own, expected_own
-    picture = light.composite(guide, channels, base, total, camera, chosen).read()
-    agree(picture, reference.composite(passes, expected_guide, expected_base, expected_total, camera, start, 0.7))
-    assert np.array_equal(np.asarray(picture), light.gather_indirect(passes, camera, chosen))
+    irradiance = light.gather(pyramid, chosen)
+    gathered = np.array(irradiance.read(), np.float64)
+    own = [fixtures.level_of(gathered, pyramid, index) for index in range(len(levels))]
+    for index, level in enumerate(levels):
+        agree(own[index], reference.gather(level, index == 0, 8))
+    total = light.upsample(pyramid, irradiance)
+    agree(total.read(), reference.upsample(levels, own))
+    guide, _ = reference.pack(passes, camera, start)
+    picture = light.gather_indirect(passes, camera, chosen)
+    agree(picture, reference.composite(passes, guide, levels[0], np.float64(total.read()), camera, start, 0.7))
+    composited = np.asarray(light.composite(channels, pyramid, total).read()).reshape(picture.shape[0], -1, 3)
+    assert np.array_equal(composited[:, :picture.shape[1]], picture)
+
+
+def within_steps(level, exact, camera, step):
+    """Is a Level what is left of an exact one, by the steps in which a surfel is stored? Depth 2^-15, area 2^-14,
+    place 1/256 of a texel, directions and radiance half of 1/1023 (z and blue: 1/511), of a power of two above it."""
+    surface = exact.area > 0
+    assert np.array_equal(level.area > 0, surface)
+    exact, level = ([image[surface] for image in (a.place, a.area, a.vector_area, a.radiance)] for a in (exact, level))
+    (place, area, vector_area, radiance), (place_, area_, vector_area_, radiance_) = exact, level
+    slack = 1 + 1e-3  # of the steps, for float32
+    assert (np.abs(place_[:, 2] / place[:, 2] - 1) <= slack * 2.0 ** -15).all()
+    ray, ray_ = (p[:, :2] / (1 if camera.orthographic else -p[:, 2:]) for p in (place, place_))
+    # The last step of an axis stands for the rest of the texel as well.
+    assert (np.abs(ray_ - ray) <= slack * (1 / 128) * np.abs(camera.scale) * step).all()
+    assert np.quantile(np.abs(ray_ - ray) / (np.abs(camera.scale) * step), 0.9) <= slack / 256
+    # A step of depth moves the footprint by twice as much.
+    unit, unit_ = (a / reference.footprint(camera, -p[:, 2], step) for a, p in ((area, place), (area_, place_)))
+    assert (np.abs(unit_ / unit - 1) <= slack * 2.0 ** -14 + 4 * 2.0 ** -15).all()
+    turned = np.abs(vector_area_ / area_[:, None] - vector_area / area[:, None])
+    assert (turned <= slack * 0.5 / reference.DIRECTION_STEPS + 1e-6).all()
+    # The largest channel is half of that power of two or more; the last step stands for what rounds above it, too.
+    largest = np.abs(radiance).max(-1, keepdims=True)
+    assert (np.abs(radiance_ - radiance) <= 2 * slack / reference.RADIANCE_STEPS * largest).all()
+
+
+@pytest.mark.parametrize("start", [1, 2, 4])
+def test_the_pyramid_agrees_with_float64(light, frame, start):
+    """The base from the passes, and each coarser level from the one that it is merged from, within the steps of the
+    format; as bits, what the reference packs, but for values that lie on the edge of a step."""
+    passes, camera = frame
+    pyramid = fixtures.pyramid_of(light, passes, camera, settings(light, start=start, radius=8))
+    levels = fixtures.level_arrays(pyramid, camera, start)
+    exact = [reference.pack(passes, camera, start)[1]]
+    at_once = light.pipeline.MERGED_AT_ONCE
+    for index in range(1, len(levels)):
+        finer = (index - 1) // at_once * at_once
+        exact.append(reference.merge(levels[finer], 2 ** (index - finer)))
+    assert len(levels) > at_once - (start == 4)
+    stored = fixtures.bits_of(pyramid.surfels)
+    for index in range(len(levels)):
+        within_steps(levels[index], exact[index], camera, start << index)
+        bits = fixtures.level_of(stored, pyramid, index)
+        assert np.mean(bits == reference.pack_surfel(exact[index], camera, start << index)) > 0.9
 
 
 @pytest.fixture(scope="module")
@@ -164,22 +196,21 @@ def test_the_same_seed_is_the_same_picture(light):
     first = picture(7)
     assert np.array_equal(first, picture(7))
     other = picture(8)
-    assert np.mean(np.any(first != other, axis=-1)[first[..., 3] > 0]) > 0.9
+    assert np.mean(np.any(first != other, axis=-1)[first.any(-1)]) > 0.9
     assert np.array_equal(picture(7 + (1 << 32)), first) and np.isfinite(picture(-1)).all()
 
 
 def test_strength_scales_and_nothing_else(light):
     passes, camera = fixtures.random_frame(light, 24, 16), fixtures.camera_for(light, 24, 16)
     one, half = (light.gather_indirect(passes, camera, settings(light, strength=s)) for s in (1.0, 0.5))
-    assert np.array_equal(half[..., :3], one[..., :3] * np.float32(0.5))
-    assert np.array_equal(half[..., 3], one[..., 3])
+    assert np.array_equal(half, one * np.float32(0.5))
 
 
 def test_scenes_of_any_scale_look_alike(light):
-    """All lengths times 1000 or a thousandth: the same light to float32."""
+    """All lengths times 1024 or a 1024th, the same bits in a surfel but for exponents: the same light to float32."""
     camera = fixtures.camera_for(light, 48, 27)
     pictures = []
-    for scale in (1e-3, 1, 1e3):
+    for scale in (2.0 ** -10, 1, 2.0 ** 10):
         passes = fixtures.random_frame(light, 48, 27, holes=0)
         passes.depth *= np.float32(scale)
         pictures.append(light.gather_indirect(passes, camera, settings(light, radius=8)))

@@ -7,7 +7,7 @@ docs/method.md.
 
 from .device import GpuUnavailable, release
 from .inputs import Camera, Passes, Settings
-from .pipeline import (Cancelled, Level, composite, gather, gather_indirect, pack, pyramid, upload, upsample)
+from .pipeline import (Cancelled, Pyramid, composite, gather, gather_indirect, merge, pack, upload, upsample)
 
-__all__ = ["Camera", "Cancelled", "GpuUnavailable", "Level", "Passes", "Settings", "composite", "gather",
-           "gather_indirect", "pack", "pyramid", "release", "upload", "upsample"]
+__all__ = ["Camera", "Cancelled", "GpuUnavailable", "Passes", "Pyramid", "Settings", "composite", "gather",
+           "gather_indirect", "merge", "pack", "release", "upload", "upsample"]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The GPU: textures, shaders that are compiled on first use, and dispatches in bands. All use of `gpu` is here.
+"""The GPU: textures, shaders that are compiled on first use, and dispatches. All use of `gpu` is here.
 
-Valid on OpenGL, Vulkan and Metal: parameters in a std140 uniform block, create infos, no texture atomics, at most
-four images and fourteen samplers a pass.
+Valid on OpenGL, Vulkan and Metal: parameters in a std140 uniform block, create infos, no texture atomics, no shared
+memory, one image and at most fourteen samplers a pass.
 """
 
 from dataclasses import dataclass
@@ -12,11 +12,13 @@ from pathlib import Path
 import gpu
 import numpy as np
 
-from .region import TABLE_WIDTH
+from .region import MOST_LEVELS, TABLE_WIDTH
 
 SHADERS = Path(__file__).resolve().parents[2] / "shaders"
-GROUP = 8                  # threads along the side of a work group
-BAND_COST = 1 << 24        # texture samples in one dispatch: under a second even on a software GPU
+# Threads of a work group, (x, y). Passes over full rows read a dozen textures and want long runs of each: squares would
+# miss the cache at every row.
+SQUARE = 8, 8
+STRIP = 64, 1
 
 
 class GpuUnavailable(RuntimeError):
@@ -28,19 +30,23 @@ PARAMETERS = np.dtype([
     ("rotation", np.float32, (3, 4)),     # rows: world to view
     ("projection", np.float32, 4),        # scale x, y; offset x, y
     ("frame", np.int32, 4),               # width, height in pixels; start; 1 if orthographic
-    ("sampling", np.int32, 4),            # samples; offsets in the table; level; seed
-    ("band", np.int32, 4),                # first row of this dispatch
+    ("levels", np.int32, (MOST_LEVELS, 4)),   # x, y in the pyramid's texture; width, height
+    ("regions", np.int32, (MOST_LEVELS, 4)),  # samples; first entry in the table; entries; entries / samples * 65536
+    ("span", np.int32, 4),                # finest and coarsest level at hand
+    ("band", np.int32, 4),                # first work group of this dispatch; seed
     ("output_scale", np.float32, 4),      # strength
 ])
-PARAMETERS_GLSL = """
-struct Parameters {
+PARAMETERS_GLSL = f"""
+struct Parameters {{
   vec4 rotation[3];
   vec4 projection;
   ivec4 frame;
-  ivec4 sampling;
+  ivec4 levels[{MOST_LEVELS}];
+  ivec4 regions[{MOST_LEVELS}];
+  ivec4 span;
   ivec4 band;
   vec4 output_scale;
-};
+}};
 """
 
 
@@ -50,23 +56,27 @@ class Pass:
 
     files: tuple[str, ...]
     reads: tuple[str, ...]
-    writes: tuple[str, ...]
+    writes: str
+    group: tuple[int, int] = SQUARE
 
 
 SURFACE_CHANNELS = ("depth_pass", "normal_x", "normal_y", "normal_z")
 COLOR_CHANNELS = ("color_r", "color_g", "color_b")
 LIGHT_CHANNELS = ("direct_r", "direct_g", "direct_b", "emission_r", "emission_g", "emission_b")
-LEVEL = ("radiance", "place", "vector_areas")
-COARSE = ("coarse", "coarse_place", "coarse_vector_area")
 PASSES = {
-    "pack": Pass(("camera", "pack"), SURFACE_CHANNELS + COLOR_CHANNELS + LIGHT_CHANNELS,
-                 ("guide", "base_radiance", "base_place", "base_vector_area")),
-    "halve": Pass(("halve",), LEVEL, ("coarse_radiance", "coarse_place", "coarse_vector_area")),
-    "gather": Pass(("gather",), (*LEVEL, "offsets"), ("irradiance",)),
-    "upsample": Pass(("bilateral", "upsample"), ("place", "vector_areas", "own", *COARSE), ("total",)),
-    "composite": Pass(("camera", "bilateral", "composite"), ("guide", *COLOR_CHANNELS, *COARSE), ("indirect",)),
-    "probe": Pass(("probe",), ("source",), ("probed",)),
+    "pack": Pass(("camera", "surfel", "pack"), SURFACE_CHANNELS + COLOR_CHANNELS + LIGHT_CHANNELS, "surfels_out", STRIP),
+    "pack_with_normals": Pass(("camera", "surfel", "geometric", "pack"),
+                              SURFACE_CHANNELS + COLOR_CHANNELS + LIGHT_CHANNELS, "surfels_out", STRIP),
+    "merge": Pass(("camera", "surfel", "tiles", "merge"), (), "surfels_out"),
+    "gather": Pass(("camera", "surfel", "tiles", "gather"), ("surfels", "offsets"), "irradiance_out"),
+    "upsample": Pass(("camera", "surfel", "bilateral", "upsample"), ("surfels", "irradiance"), "total_out"),
+    "composite": Pass(("camera", "surfel", "bilateral", "composite"),
+                      (*SURFACE_CHANNELS, *COLOR_CHANNELS, "surfels", "total"), "indirect_out", STRIP),
+    "probe": Pass(("probe",), ("source",), "probed_out"),
+    "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }
+SURFELS = "surfels", "surfels_out"        # the names of textures in this format:
+SURFEL_FORMAT = "RGBA32UI"
 
 
 def parameters(**values) -> np.ndarray:
@@ -78,8 +88,8 @@ def parameters(**values) -> np.ndarray:
     return block
 
 
-def texture(width: int, height: int, channels: int = 4, data: np.ndarray | None = None) -> gpu.types.GPUTexture:
-    """A float32 texture of 1, 2 or 4 channels, filled from a C-contiguous array in row order if one is given.
+def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray | None = None) -> gpu.types.GPUTexture:
+    """A texture, filled from a C-contiguous float32 array in row order if one is given.
 
     Raises GpuUnavailable where the GPU has no room for it or cannot make one so large.
     """
@@ -89,8 +99,7 @@ def texture(width: int, height: int, channels: int = 4, data: np.ndarray | None 
             raise GpuUnavailable(f"The frame needs a texture of {width} x {height}, but this GPU's largest is "
                                  f"{largest} x {largest}. Lower the render resolution")
         buffer = None if data is None else gpu.types.Buffer("FLOAT", data.size, data.ravel())
-        return gpu.types.GPUTexture((width, height), format={1: "R32F", 2: "RG32F", 4: "RGBA32F"}[channels],
-                                    data=buffer)
+        return gpu.types.GPUTexture((width, height), format=format, data=buffer)
     except SystemError as error:
         raise GpuUnavailable("Blender has no GPU here. In background mode it needs a graphics driver; on a machine "
                              "without a display, install Mesa's software driver") from error
@@ -109,11 +118,15 @@ def shader(name: str) -> gpu.types.GPUShader:
     info.typedef_source(PARAMETERS_GLSL)
     info.uniform_buf(0, "Parameters", "parameters")
     info.define("OFFSETS_WIDTH", str(TABLE_WIDTH))
+    if made_of.files == ("probe",):
+        info.define("SOURCE", made_of.reads[0])
     for slot, sampler in enumerate(made_of.reads):
-        info.sampler(slot, "FLOAT_2D", sampler)
-    for slot, image in enumerate(made_of.writes):
-        info.image(slot, "RGBA32F", "FLOAT_2D", image, qualifiers={"WRITE"})
-    info.local_group_size(GROUP, GROUP, 1)
+        info.sampler(slot, "UINT_2D" if sampler in SURFELS else "FLOAT_2D", sampler)
+    if made_of.writes in SURFELS:
+        info.image(0, SURFEL_FORMAT, "UINT_2D", made_of.writes, qualifiers={"READ", "WRITE"})
+    else:
+        info.image(0, "RGBA32F", "FLOAT_2D", made_of.writes, qualifiers={"WRITE"})
+    info.local_group_size(*made_of.group, 1)
     info.compute_source("\n".join((SHADERS / f"{file}.glsl").read_text() for file in ("common", *made_of.files)))
     try:
         return gpu.shader.create_from_info(info)
@@ -127,35 +140,24 @@ def release() -> None:
     shader.cache_clear()
 
 
-def dispatch(name: str, block: np.ndarray, textures: dict, rows_cost: int = 0, after_band=lambda done: None) -> None:
-    """Run a pass over every texel of the first texture that it writes.
+def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, int]) -> None:
+    """Run a pass in (x, y) work groups; textures by the names in PASSES."""
+    made_of, program = PASSES[name], shader(name)
+    uniforms = gpu.types.GPUUniformBuf(block.tobytes())  # one a dispatch: an earlier one may still be in use
+    program.bind()
+    program.uniform_block("parameters", uniforms)
+    for sampler in made_of.reads:
+        program.uniform_sampler(sampler, textures[sampler])
+    program.image(made_of.writes, textures[made_of.writes])
+    gpu.compute.dispatch(program, *groups, 1)
+    # Blender's context remembers what was bound last by its address. Left bound and freed later, it would be taken
+    # for whatever shader gets that address next, and the compositor then crashes in the driver.
+    gpu.shader.unbind()
 
-    textures: by the names in PASSES. rows_cost: texture samples that one row costs; a pass that costs more than
-    BAND_COST runs in bands of rows, each waited for, with after_band(share of rows done) between them.
-    """
-    made_of = PASSES[name]
-    target = textures[made_of.writes[0]]
-    band = target.height
-    if rows_cost * target.height > BAND_COST:
-        band = min(target.height, max(GROUP, BAND_COST // rows_cost // GROUP * GROUP))
-    for first in range(0, target.height, band):
-        block["band"][0] = first
-        uniforms = gpu.types.GPUUniformBuf(block.tobytes())  # one a dispatch: an earlier one may still be in use
-        program = shader(name)
-        program.bind()
-        program.uniform_block("parameters", uniforms)
-        for sampler in made_of.reads:
-            program.uniform_sampler(sampler, textures[sampler])
-        for image in made_of.writes:
-            program.image(image, textures[image])
-        rows = min(band, target.height - first)
-        gpu.compute.dispatch(program, -(-target.width // GROUP), -(-rows // GROUP), 1)
-        # Blender's context remembers what was bound last by its address. Left bound and freed later, it would be taken
-        # for whatever shader gets that address next, and the compositor then crashes in the driver.
-        gpu.shader.unbind()
-        if band < target.height:
-            wait(target)
-            after_band((first + rows) / target.height)
+
+def groups(width: int, height: int, shape: tuple[int, int] = SQUARE) -> tuple[int, int]:
+    """Work groups (x, y) of a shape with a thread for each of width x height."""
+    return -(-width // shape[0]), -(-height // shape[1])
 
 
 def read(source: gpu.types.GPUTexture) -> np.ndarray:
@@ -166,5 +168,6 @@ def read(source: gpu.types.GPUTexture) -> np.ndarray:
 def wait(target: gpu.types.GPUTexture) -> None:
     """Return when everything that writes `target` has run: reads one texel of it back."""
     probed = texture(1, 1)
-    dispatch("probe", parameters(), {"source": target, "probed": probed})
+    name = "probe_surfels" if target.format == SURFEL_FORMAT else "probe"
+    dispatch(name, parameters(), {PASSES[name].reads[0]: target, "probed_out": probed}, (1, 1))
     read(probed)

@@ -7,6 +7,7 @@ import numpy as np
 
 from .region import LARGEST_RADIUS
 
+FARTHEST = 1e9             # metres; EEVEE writes 1e10 where there is no surface
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -52,6 +53,13 @@ class Passes:
         """The arrays of each pass, depth as a pass of one channel."""
         passes = {field.name: getattr(self, field.name) for field in fields(self)}
         return passes | {"depth": (self.depth,)}
+
+    def lacks_normals(self) -> bool:
+        """Is there a surface without a normal? Materials of pure emission can write (0, 0, 0)."""
+        without = self.depth < FARTHEST
+        for axis in self.normal:
+            without &= axis == 0
+        return bool(without.any())
 
     def repair(self) -> dict[str, int]:
         """Pixels that hold NaN or infinity, by pass; empty for sound passes. Changes nothing: the shaders leave

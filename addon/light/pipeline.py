@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The method from top to bottom: upload, pack, pyramid, gather and upsample level by level, composite, read back.
+"""The method from top to bottom: upload, pack and merge (the pyramid), gather, upsample, composite, read back.
 
 Textures have the bottom row first, except the uploaded passes. Each stage is a function of its own, so that a test
 can feed and read any of them; gather_indirect() at the end puts them together. Equations: docs/method.md.
@@ -13,9 +13,11 @@ import numpy as np
 
 from . import device
 from .inputs import Camera, Passes, Settings
-from .region import TABLE_WIDTH, level_sizes, offsets, samples_at
+from .region import TABLE_WIDTH, level_boxes, offsets, samples_at
 
 Texture = gpu.types.GPUTexture
+MERGED_AT_ONCE = 3         # levels that one dispatch of merge makes from one
+BAND_COST = 1 << 24        # samples in one dispatch: under a second even on a software GPU
 
 
 class Cancelled(Exception):
@@ -23,89 +25,117 @@ class Cancelled(Exception):
 
 
 @dataclass(frozen=True, eq=False)
-class Level:
-    """One level of the pyramid: three RGBA32F textures of (height, width).
+class Pyramid:
+    """All levels in one RGBA32UI texture, a surfel a texel (shaders/surfel.glsl), and what shaders must know of them.
 
-    radiance: rgb, mean over the area, W sr^-1 m^-2. place: xyz, mean view-space point, metres; a, area A, m^2 (0: no
-    surface). vector_area: xyz, the sum of A n, m^2.
+    boxes: (x, y, width, height) of each level, finest first. parameters: a Parameters block with the camera in it.
     """
 
-    radiance: Texture
-    place: Texture
-    vector_area: Texture
+    surfels: Texture
+    boxes: list[tuple[int, int, int, int]]
+    parameters: np.ndarray
 
     @property
-    def size(self) -> tuple[int, int]:
-        return self.place.width, self.place.height
+    def last(self) -> int:
+        """The coarsest level."""
+        return len(self.boxes) - 1
 
-    def as_emitters(self) -> dict[str, Texture]:
-        return {"radiance": self.radiance, "place": self.place, "vector_areas": self.vector_area}
-
-    def as_coarse(self, irradiance: Texture) -> dict[str, Texture]:
-        return {"coarse": irradiance, "coarse_place": self.place, "coarse_vector_area": self.vector_area}
+    def groups(self, level: int) -> int:
+        """Work groups that one level takes."""
+        across, up = device.groups(*self.boxes[level][2:])
+        return across * up
 
 
 def upload(passes: Passes) -> dict[str, Texture]:
-    """One R32F texture a channel, named as the shaders name them; no copy is made in Python."""
+    """One texture a channel, named as the shaders name them, with four neighbouring pixels of a row in each texel.
+    No copy is made in Python where the width is a multiple of four; other rows are filled up with background."""
     groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal), device.COLOR_CHANNELS: passes.diffuse_color,
               device.LIGHT_CHANNELS: (*passes.diffuse_direct, *passes.emission)}
-    return {name: device.texture(*passes.size, 1, array)
+    width, height = passes.size
+    quads = -(-width // 4)
+
+    def rows(array):
+        return np.pad(array, ((0, 0), (0, 4 * quads - width))) if width % 4 else array
+
+    return {name: device.texture(quads, height, data=rows(array))
             for names, arrays in groups.items() for name, array in zip(names, arrays, strict=True)}
 
 
-def pack(channels: dict[str, Texture], camera: Camera, start: int) -> tuple[Texture, Level]:
-    """The full-resolution guide (view normal xyz, depth; 0 where there is no surface) and the pyramid's base."""
-    width, height = channels["depth_pass"].width, channels["depth_pass"].height
-    guide, base = device.texture(width, height), _new_level(-(-width // start), -(-height // start))
-    device.dispatch("pack", _camera_block(camera, width, height, start), channels | {
-        "guide": guide, "base_radiance": base.radiance, "base_place": base.place,
-        "base_vector_area": base.vector_area})
-    return guide, base
+def pack(channels: dict[str, Texture], passes: Passes, camera: Camera, settings: Settings) -> Pyramid:
+    """The pyramid's base, from the passes' uploaded channels; its coarser levels have their place, and are empty."""
+    width, height = passes.size
+    boxes = level_boxes(-(-width // settings.start), -(-height // settings.start), settings.radius)
+    surfels = device.texture(max(x + w for x, _, w, _ in boxes), max(y + h for _, y, _, h in boxes),
+                             device.SURFEL_FORMAT)
+    block = device.parameters(
+        rotation=camera.rotation, projection=(*camera.scale, *camera.offset), levels=boxes,
+        frame=(width, height, settings.start, int(camera.orthographic)), span=(0, len(boxes) - 1),
+        output_scale=(settings.strength,))
+    device.dispatch("pack_with_normals" if passes.lacks_normals() else "pack", block, channels | {"surfels_out": surfels},
+                    device.groups(-(-width // 4), boxes[0][3], device.STRIP))
+    return Pyramid(surfels, boxes, block)
 
 
-def pyramid(base: Level, radius: int) -> list[Level]:
-    """The levels, finest first, halved by exact sums until the whole image lies within the radius."""
-    levels = [base]
-    for size in level_sizes(*base.size, radius)[1:]:
-        coarse = _new_level(*size)
-        device.dispatch("halve", device.parameters(), levels[-1].as_emitters() | {
-            "coarse_radiance": coarse.radiance, "coarse_place": coarse.place,
-            "coarse_vector_area": coarse.vector_area})
-        levels.append(coarse)
-    return levels
+def merge(pyramid: Pyramid) -> None:
+    """Fill the coarser levels, by sums over the finer ones."""
+    block = pyramid.parameters.copy()
+    for finer in range(0, pyramid.last, MERGED_AT_ONCE):
+        last = min(finer + MERGED_AT_ONCE, pyramid.last)
+        block["span"][:2] = finer, last
+        device.dispatch("merge", block, {"surfels_out": pyramid.surfels},
+                        (sum(pyramid.groups(level) for level in range(finer + 1, last + 1)), 1))
 
 
-def gather(level: Level, index: int, settings: Settings, after_band=lambda done: None) -> Texture:
-    """What each texel of level `index` (0: finest) receives from its region.
+def gather(pyramid: Pyramid, settings: Settings, after_band=lambda done: None) -> Texture:
+    """What each texel of each level receives from its region, laid out as the pyramid is.
 
     rgb: irradiance E, W m^-2, the sum of pi L times the form factor; a: the sum F of the form factors, the share of
     the hemisphere that sends light. Both unbiased for the sum over the whole region, and not yet bounded.
+
+    Long ones run in bands of BAND_COST samples, each waited for, with after_band(share done) after each: no driver's
+    watchdog fires, and the render can be cancelled.
     """
-    region = offsets(settings.radius, finest=index == 0)
-    samples = samples_at(index, settings.samples, len(region))
-    irradiance = device.texture(*level.size)
-    block = device.parameters(sampling=(samples, len(region), index, _as_int32(settings.seed)))
-    device.dispatch("gather", block, level.as_emitters() | {"offsets": _table(region), "irradiance": irradiance},
-                    level.size[0] * samples, after_band)
+    disk, ring = offsets(settings.radius, finest=True), offsets(settings.radius, finest=False)
+    block = pyramid.parameters.copy()
+    costs = []  # samples of each work group, in the order in which the shader takes them: coarsest level first
+    for level in range(pyramid.last, -1, -1):
+        region, first = (ring, len(disk)) if level else (disk, 0)
+        samples = samples_at(level, settings.samples, len(region))
+        block["regions"].view(np.uint32)[level] = samples, first, len(region), (len(region) << 16) // samples
+        costs.append(np.full(pyramid.groups(level), device.SQUARE[0] * device.SQUARE[1] * samples))
+    block["band"][1] = _as_int32(settings.seed)
+    done = np.cumsum(np.concatenate(costs))
+    irradiance = device.texture(pyramid.surfels.width, pyramid.surfels.height)
+    textures = {"surfels": pyramid.surfels, "offsets": _table(disk, ring), "irradiance_out": irradiance}
+    first = 0
+    while first < len(done):
+        before = done[first - 1] if first else 0
+        end = max(first + 1, int(np.searchsorted(done, before + BAND_COST, side="right")))
+        block["band"][0] = first
+        device.dispatch("gather", block, textures, (end - first, 1))
+        if end - first < len(done):
+            device.wait(irradiance)
+            after_band(done[end - 1] / done[-1])
+        first = end
     return irradiance
 
 
-def upsample(fine: Level, own: Texture, coarse: Level, coarse_total: Texture) -> Texture:
-    """own + coarse_total at the fine level's resolution, by bilateral interpolation along the fine surface."""
-    total = device.texture(*fine.size)
-    device.dispatch("upsample", device.parameters(), coarse.as_coarse(coarse_total) | {
-        "place": fine.place, "vector_areas": fine.vector_area, "own": own, "total": total})
+def upsample(pyramid: Pyramid, irradiance: Texture) -> Texture:
+    """What each texel of the base receives in all: every level's light, coarser ones interpolated along the surface."""
+    _, _, width, height = pyramid.boxes[0]
+    total = device.texture(width, height)
+    device.dispatch("upsample", pyramid.parameters, {
+        "surfels": pyramid.surfels, "irradiance": irradiance, "total_out": total}, device.groups(width, height))
     return total
 
 
-def composite(guide: Texture, channels: dict[str, Texture], base: Level, total: Texture, camera: Camera,
-              settings: Settings) -> Texture:
-    """Indirect radiance at full resolution: strength * albedo / pi * E / max(1, F); alpha 1 on every sound surface."""
-    indirect = device.texture(guide.width, guide.height)
-    block = _camera_block(camera, guide.width, guide.height, settings.start)
-    block["output_scale"][0] = settings.strength
-    device.dispatch("composite", block, base.as_coarse(total) | {
-        "guide": guide, "indirect": indirect, **{name: channels[name] for name in device.COLOR_CHANNELS}})
+def composite(channels: dict[str, Texture], pyramid: Pyramid, total: Texture) -> Texture:
+    """Indirect radiance at full resolution, strength * albedo / pi * E / max(1, F), as rows of r g b r g b ..., with
+    four numbers of them in a texel. 0 where there is no surface."""
+    quads, height = channels["depth_pass"].width, channels["depth_pass"].height
+    indirect = device.texture(3 * quads, height)
+    device.dispatch("composite", pyramid.parameters, channels | {
+        "surfels": pyramid.surfels, "total": total, "indirect_out": indirect}, device.groups(quads, height, device.STRIP))
     return indirect
 
 
@@ -113,12 +143,13 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
                     timings: dict[str, float] | None = None) -> np.ndarray:
     """One bounce of indirect light between the surfaces that the passes show.
 
-    Returns (H, W, 4) float32, bottom row first: rgb the indirect radiance to add to the picture, W sr^-1 m^-2; alpha 1
-    on surfaces, 0 on background and on pixels that hold NaN or infinity in any pass (their rgb is 0).
+    Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1 m^-2; 0 on
+    background. Pixels that hold NaN or infinity in any pass send nothing, and get 0 where it is in depth, normal or
+    colour.
 
     progress(stage, fraction): called between stages and bands with the share of all work done; a true answer raises
-    Cancelled. timings: filled with seconds for upload, pyramid (pack included), gather, upsample (composite
-    included) and read_back; asking for them waits for the GPU after every stage.
+    Cancelled. timings: filled with seconds for upload, pyramid, gather, upsample (composite included) and read_back;
+    asking for them waits for the GPU after every stage.
     Raises GpuUnavailable where the GPU cannot do it.
     """
     lap = _stopwatch(timings)
@@ -132,48 +163,32 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
     lap("upload", channels["emission_b"])
 
     report("pyramid", 0.0)
-    guide, base = pack(channels, camera, settings.start)
-    for name in device.LIGHT_CHANNELS + device.SURFACE_CHANNELS:
+    pyramid = pack(channels, passes, camera, settings)
+    for name in device.LIGHT_CHANNELS:
         del channels[name]
-    levels = pyramid(base, settings.radius)
-    lap("pyramid", levels[-1].place)
+    merge(pyramid)
+    lap("pyramid", pyramid.surfels)
 
-    texels = [width * height for width, height in (level.size for level in levels)]
-    done, total = 0, None
-    while levels:
-        level, index = levels.pop(), len(levels)
-        report("gather", done / sum(texels))
-        irradiance = gather(level, index, settings,
-                            lambda rows: report("gather", (done + rows * texels[index]) / sum(texels)))
-        done += texels[index]
-        lap("gather", irradiance)
-        total = irradiance if total is None else upsample(level, irradiance, coarser, total)
-        lap("upsample", total)
-        coarser = level
+    report("gather", 0.0)
+    irradiance = gather(pyramid, settings, lambda done: report("gather", done))
+    lap("gather", irradiance)
 
     report("upsample", 1.0)
-    indirect = composite(guide, channels, base, total, camera, settings)
+    indirect = composite(channels, pyramid, upsample(pyramid, irradiance))
     lap("upsample", indirect)
-    del guide, channels, base, level, coarser, irradiance, total
-    picture = device.read(indirect)
+    del channels, pyramid, irradiance
+    width, height = passes.size
+    picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
     lap("read_back")
     return picture
 
 
-def _new_level(width: int, height: int) -> Level:
-    return Level(*(device.texture(width, height) for _ in range(3)))
-
-
-def _camera_block(camera: Camera, width: int, height: int, start: int) -> np.ndarray:
-    return device.parameters(rotation=camera.rotation, projection=(*camera.scale, *camera.offset),
-                             frame=(width, height, start, int(camera.orthographic)))
-
-
-def _table(region: np.ndarray) -> Texture:
-    rows = -(-len(region) // TABLE_WIDTH)
+def _table(*regions: np.ndarray) -> Texture:
+    entries = np.concatenate(regions)
+    rows = -(-len(entries) // TABLE_WIDTH)
     table = np.zeros((rows * TABLE_WIDTH, 2), np.float32)
-    table[:len(region)] = region
-    return device.texture(TABLE_WIDTH, rows, 2, table)
+    table[:len(entries)] = entries
+    return device.texture(TABLE_WIDTH, rows, "RG32F", table)
 
 
 def _as_int32(seed: int) -> int:

@@ -1,19 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The texels that one level gathers from, as tables of offsets.
+"""The levels of the pyramid, and the texels that each gathers from, as tables of offsets.
 
 Levels must tile the image: the finest takes the disk 0 < r < R around the receiver, every coarser one the ring from
 about R/2 to R of its own texels, which is where the finer one stopped. The coarsest is so small that its ring holds
 everything left.
 """
 
+from functools import cache
+
 import numpy as np
 
 TABLE_WIDTH = 256          # texels in a row of the table's texture; the shader is compiled with it
+MOST_LEVELS = 16           # of a frame: 16384 pixels across at the smallest radius have 15
 LARGEST_RADIUS = 140       # keeps a table under the 65,535 entries that the shader's random index can reach
 
 
+@cache
 def offsets(radius: int, finest: bool) -> np.ndarray:
-    """(n, 2) int32: the offsets (x, y) of a region of `radius` texels, along a Z-order curve.
+    """(n, 2) int32, read-only: the offsets (x, y) of a region of `radius` texels, along a Z-order curve.
 
     The order is what stratified sampling lives from: a part of the table is a compact patch of the region.
     """
@@ -23,7 +27,9 @@ def offsets(radius: int, finest: bool) -> np.ndarray:
     inside = (square < radius * radius) & (square > (0 if finest else hole(radius)))
     x, y = x[inside], y[inside]
     order = np.argsort(_z_order(x + radius, y + radius))
-    return np.stack([x[order], y[order]], axis=-1).astype(np.int32)
+    table = np.stack([x[order], y[order]], axis=-1).astype(np.int32)
+    table.setflags(write=False)
+    return table
 
 
 def hole(radius: int) -> int:
@@ -48,6 +54,17 @@ def level_sizes(width: int, height: int, radius: int) -> list[tuple[int, int]]:
         width, height = sizes[-1]
         sizes.append(((width + 1) // 2, (height + 1) // 2))
     return sizes
+
+
+def level_boxes(width: int, height: int, radius: int) -> list[tuple[int, int, int, int]]:
+    """(x, y, width, height) of each level in the one texture that holds all: the finest at the origin, the others in a
+    row along its longer side."""
+    (first, *coarser), along = level_sizes(width, height, radius), 0
+    boxes = [(0, 0, *first)]
+    for size in coarser:
+        boxes.append((along, height, *size) if width >= height else (width, along, *size))
+        along += size[width < height]
+    return boxes
 
 
 def samples_at(level: int, samples: int, texels: int) -> int:

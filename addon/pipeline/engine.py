@@ -149,7 +149,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
         result = self.begin_result(0, 0, width, height, layer=shot.layer)
         if picture is None:
             picture = np.zeros((result.resolution_y, result.resolution_x, 3), np.float32)
-        result.layers[0].passes[PASS].rect.foreach_set(picture[..., :3].ravel())
+        result.layers[0].passes[PASS].rect.foreach_set(picture.ravel())
         self.end_result(result)
 
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One dispatch for several levels: its work groups are the tiles of level `last`, then those of the next finer one, down
+// to `first`. The coarsest come first because a texel of theirs takes longest.
+
+// The texel of this thread in its level, from the number of its work group; `level` is set.
+ivec2 tile_texel(int first, int last, int group, out int level)
+{
+  ivec2 tiles = ivec2(0);
+  for (level = last; level >= first; level--) {
+    tiles = (level_size(level) + ivec2(gl_WorkGroupSize.xy) - 1) / ivec2(gl_WorkGroupSize.xy);
+    if (group < tiles.x * tiles.y) {
+      break;
+    }
+    group -= tiles.x * tiles.y;
+  }
+  return ivec2(group % tiles.x, group / tiles.x) * ivec2(gl_WorkGroupSize.xy) + ivec2(gl_LocalInvocationID.xy);
+}
