@@ -8,6 +8,15 @@ struct Quad {
   vec4 x, y, z;
 };
 
+Quad quad_of(vec4 x, vec4 y, vec4 z)
+{
+  Quad quad;  // Metal has no constructors of structs
+  quad.x = x;
+  quad.y = y;
+  quad.z = z;
+  return quad;
+}
+
 bool is_orthographic()
 {
   return parameters.frame.w != 0;
@@ -29,7 +38,7 @@ Quad view_place(vec4 column, float row, vec4 depth)
 {
   vec4 x = parameters.projection.z + parameters.projection.x * column;
   vec4 y = vec4(parameters.projection.w + parameters.projection.y * row);
-  return is_orthographic() ? Quad(x, y, -depth) : Quad(x * depth, y * depth, -depth);
+  return is_orthographic() ? quad_of(x, y, -depth) : quad_of(x * depth, y * depth, -depth);
 }
 
 Quad view_normal(Quad world)
@@ -38,7 +47,7 @@ Quad view_normal(Quad world)
   vec4 y = parameters.rotation[1].x * world.x + parameters.rotation[1].y * world.y + parameters.rotation[1].z * world.z;
   vec4 z = parameters.rotation[2].x * world.x + parameters.rotation[2].y * world.y + parameters.rotation[2].z * world.z;
   vec4 share = inversesqrt(max(x * x + y * y + z * z, vec4(1e-37)));
-  return Quad(x * share, y * share, z * share);
+  return quad_of(x * share, y * share, z * share);
 }
 
 // World area (m^2) behind each pixel: its footprint on the image plane, over the cosine to the surface.

@@ -11,8 +11,8 @@ void main()
   }
   ivec2 source = pass_texel(quad, row);
   vec4 depth = texelFetch(depth_pass, source, 0);
-  Quad world = Quad(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
-  Quad albedo = Quad(texelFetch(color_r, source, 0), texelFetch(color_g, source, 0), texelFetch(color_b, source, 0));
+  Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
+  Quad albedo = quad_of(texelFetch(color_r, source, 0), texelFetch(color_g, source, 0), texelFetch(color_b, source, 0));
   vec4 columns = float(4 * quad) + vec4(0.5, 1.5, 2.5, 3.5);
   Quad place = view_place(columns, float(row) + 0.5, depth);
   Quad normal = view_normal(world);
@@ -25,7 +25,7 @@ void main()
   float up = (float(row) + 0.5) / start - 0.5;
   ivec2 corner = ivec2(floor(vec2(across.x, up)));
   vec4 weights = vec4(0.0), bound = weights;
-  Quad sum = Quad(weights, weights, weights);
+  Quad sum = quad_of(weights, weights, weights);
   for (int k = 0; k < taps.x * taps.y; k++) {
     ivec2 tap = corner + (k < taps.x ? ivec2(k, 0) : ivec2(k - taps.x, 1));
     vec4 linear = max(1.0 - abs(across - float(tap.x)), 0.0) * max(1.0 - abs(up - float(tap.y)), 0.0);

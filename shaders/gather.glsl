@@ -38,8 +38,9 @@ float form_factor(vec3 receiver, vec3 normal, vec3 place, float area, vec3 vecto
 
 void main()
 {
-  int level;
-  ivec2 texel = tile_texel(0, parameters.span.y, int(gl_WorkGroupID.x) + parameters.band.x, level);
+  ivec3 tile = tile_texel(0, parameters.span.y, int(gl_WorkGroupID.x) + parameters.band.x);
+  ivec2 texel = tile.xy;
+  int level = tile.z;
   ivec2 size = level_size(level), origin = level_origin(level);
   if (!is_inside(texel, size)) {
     return;

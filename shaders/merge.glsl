@@ -5,13 +5,14 @@
 void main()
 {
   int finer = parameters.span.x;
-  int level, index = int(gl_WorkGroupID.x);
-  ivec2 texel = tile_texel(finer + 1, parameters.span.y, index, level);
+  ivec3 tile = tile_texel(finer + 1, parameters.span.y, int(gl_WorkGroupID.x));
+  ivec2 texel = tile.xy;
+  int level = tile.z;
   if (!is_inside(texel, level_size(level))) {
     return;
   }
   int side = 1 << (level - finer);
-  Sums sums = Sums(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+  Sums sums = sums_of(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
   for (int row = 0; row < side; row++) {
     for (int column = 0; column < side; column++) {
       ivec2 child = texel * side + ivec2(column, row);

@@ -2,6 +2,11 @@
 // Pack: from EEVEE's passes to the pyramid's base. One thread reads four neighbouring pixels of `start` rows and makes
 // the 4 / start base texels that they fill.
 
+vec4 keep(bvec4 which, vec4 values)
+{
+  return vec4(which.x ? values.x : 0.0, which.y ? values.y : 0.0, which.z ? values.z : 0.0, which.w ? values.w : 0.0);
+}
+
 void main()
 {
   int start = parameters.frame.z;
@@ -13,12 +18,12 @@ void main()
   vec4 columns = float(4 * quad) + vec4(0.5, 1.5, 2.5, 3.5);
   // Sums down the rows, one a column of pixels.
   vec4 area = vec4(0.0);
-  Quad moment = Quad(area, area, area), vector_area = moment, power = moment;
+  Quad moment = quad_of(area, area, area), vector_area = moment, power = moment;
   for (int row = texel_row * start; row < min(texel_row * start + start, parameters.frame.y); row++) {
     ivec2 source = pass_texel(quad, row);
     vec4 depth = texelFetch(depth_pass, source, 0);
-    Quad world = Quad(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
-    Quad radiance = Quad(
+    Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
+    Quad radiance = quad_of(
         texelFetch(direct_r, source, 0) * texelFetch(color_r, source, 0) + texelFetch(emission_r, source, 0),
         texelFetch(direct_g, source, 0) * texelFetch(color_g, source, 0) + texelFetch(emission_g, source, 0),
         texelFetch(direct_b, source, 0) * texelFetch(color_b, source, 0) + texelFetch(emission_b, source, 0));
@@ -42,21 +47,21 @@ void main()
 #endif
     vec4 pixel_area = texel_area(columns, float(row) + 0.5, depth, normal);
     Quad place = view_place(columns, float(row) + 0.5, depth);
-    area += mix(vec4(0.0), pixel_area, sound);
-    moment.x += mix(vec4(0.0), pixel_area * place.x, sound);
-    moment.y += mix(vec4(0.0), pixel_area * place.y, sound);
-    moment.z += mix(vec4(0.0), pixel_area * place.z, sound);
-    vector_area.x += mix(vec4(0.0), pixel_area * normal.x, sound);
-    vector_area.y += mix(vec4(0.0), pixel_area * normal.y, sound);
-    vector_area.z += mix(vec4(0.0), pixel_area * normal.z, sound);
-    power.x += mix(vec4(0.0), pixel_area * radiance.x, sound);
-    power.y += mix(vec4(0.0), pixel_area * radiance.y, sound);
-    power.z += mix(vec4(0.0), pixel_area * radiance.z, sound);
+    area += keep(sound, pixel_area);
+    moment.x += keep(sound, pixel_area * place.x);
+    moment.y += keep(sound, pixel_area * place.y);
+    moment.z += keep(sound, pixel_area * place.z);
+    vector_area.x += keep(sound, pixel_area * normal.x);
+    vector_area.y += keep(sound, pixel_area * normal.y);
+    vector_area.z += keep(sound, pixel_area * normal.z);
+    power.x += keep(sound, pixel_area * radiance.x);
+    power.y += keep(sound, pixel_area * radiance.y);
+    power.z += keep(sound, pixel_area * radiance.z);
   }
   for (int k = 0; k < 4 / start; k++) {
     ivec2 texel = ivec2(quad * (4 / start) + k, texel_row);
     vec4 mine = vec4(equal(ivec4(0, 1, 2, 3) / start, ivec4(k)));
-    Sums sums = Sums(dot(area, mine), vec3(dot(moment.x, mine), dot(moment.y, mine), dot(moment.z, mine)),
+    Sums sums = sums_of(dot(area, mine), vec3(dot(moment.x, mine), dot(moment.y, mine), dot(moment.z, mine)),
                      vec3(dot(vector_area.x, mine), dot(vector_area.y, mine), dot(vector_area.z, mine)),
                      vec3(dot(power.x, mine), dot(power.y, mine), dot(power.z, mine)));
     if (texel.x < level_size(0).x) {

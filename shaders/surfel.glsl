@@ -24,6 +24,16 @@ struct Sums {
   vec3 power;         // of A L
 };
 
+Sums sums_of(float area, vec3 moment, vec3 vector_area, vec3 power)
+{
+  Sums sums;
+  sums.area = area;
+  sums.moment = moment;
+  sums.vector_area = vector_area;
+  sums.power = power;
+  return sums;
+}
+
 #define DIRECTION_STEPS vec3(1023.0, 1023.0, 511.0)   // to 1 itself
 #define RADIANCE_STEPS vec3(1024.0, 1024.0, 512.0)    // below 1, in steps of which powers of two are whole numbers
 #define LEAST_AREA 1.490116119384765625e-8  // 2^-26: one pixel's share of the coarsest texel of any frame

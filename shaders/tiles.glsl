@@ -2,10 +2,11 @@
 // One dispatch for several levels: its work groups are the tiles of level `last`, then those of the next finer one, down
 // to `first`. The coarsest come first because a texel of theirs takes longest.
 
-// The texel of this thread in its level, from the number of its work group; `level` is set.
-ivec2 tile_texel(int first, int last, int group, out int level)
+// The texel of this thread in its level, and that level, from the number of its work group.
+ivec3 tile_texel(int first, int last, int group)
 {
   ivec2 tiles = ivec2(0);
+  int level;
   for (level = last; level >= first; level--) {
     tiles = (level_size(level) + ivec2(gl_WorkGroupSize.xy) - 1) / ivec2(gl_WorkGroupSize.xy);
     if (group < tiles.x * tiles.y) {
@@ -13,5 +14,6 @@ ivec2 tile_texel(int first, int last, int group, out int level)
     }
     group -= tiles.x * tiles.y;
   }
-  return ivec2(group % tiles.x, group / tiles.x) * ivec2(gl_WorkGroupSize.xy) + ivec2(gl_LocalInvocationID.xy);
+  ivec2 corner = ivec2(group % tiles.x, group / tiles.x) * ivec2(gl_WorkGroupSize.xy);
+  return ivec3(corner + ivec2(gl_LocalInvocationID.xy), level);
 }
