@@ -6,12 +6,11 @@
 measure() finds the three rates, work() counts. The counts are of what the method needs however it is laid out: each
 number of the input is read once, each result is written once, a sample is one fetch of one record."""
 
-import re
-from contextlib import contextmanager
 from dataclasses import dataclass
 from statistics import median
 
 from . import opengl
+from .fetchless import gather_passes, without_fetches
 
 CHANNELS_IN = 13          # of the passes, float32: depth, normal, colour, direct light, emission
 CHANNELS_OUT = 3          # red, green and blue of the result
@@ -21,7 +20,7 @@ RECORD = 16               # bytes of what a texel of the pyramid holds, and of w
 GROUP = 8                 # threads along the side of a work group, as in addon/light
 FETCHES = 256             # by a thread, in the measurement of the fetch rate
 REACH = 16                # of those, in texels: the default radius
-REPEATS = 9
+ROUNDS = 9
 
 
 @dataclass(frozen=True)
@@ -73,33 +72,66 @@ def _samples(region, index, size, settings):
 
 
 def measure(light, passes, camera, settings):
-    """The rates of this machine, in units a second: "bandwidth" (bytes), "fetches" and "arithmetic" (samples); and what
-    the first two are the fastest of, "copies" and "fetch_formats". All at the given frame and settings."""
+    """The rates of this machine and the frame they are to be held against, measured in turn, medians of ROUNDS:
+
+    "bandwidth" (bytes a second), "fetches" and "arithmetic" (samples a second); "copies" and "fetch_formats", which the
+    first two are the fastest of; "frame" and "gather", the seconds of all passes and of those that gather."""
     width, height = passes.size
     base = -(-width // settings.start), -(-height // settings.start)
-    fetched = {format: _fetch_rate(format, base) for format in ("RGBA32F", "RGBA32UI")}
-    copies = {f"{format} {size[0]}x{size[1]}": _copy_rate(format, size)
-              for format in ("R32F", "RGBA32F") for size in (base, (width, height), (2048, 2048))}
-    return {"bandwidth": max(copies.values()), "fetches": max(fetched.values()),
-            "arithmetic": _arithmetic_rate(light, passes, camera, settings), "copies": copies, "fetch_formats": fetched}
+    probes = {("fetch_formats", format): _fetches(format, base) for format in ("RGBA32F", "RGBA32UI")}
+    probes |= {("copies", f"{format} {size[0]}x{size[1]}"): _copy(format, size)
+               for format in ("R32F", "RGBA32F") for size in (base, (width, height), (2048, 2048))}
+    seconds = {}
+
+    def note(name, measured):
+        seconds.setdefault(name, []).append(measured)
+
+    def frame():
+        with opengl.timed(light) as dispatches:
+            light.gather_indirect(passes, camera, settings)
+        by_pass = {name: sum(parts) for name, parts in dispatches.items()}
+        return sum(by_pass.values()), sum(by_pass[name] for name in gather_passes(light))
+
+    for _ in range(1 + ROUNDS):  # the first compiles
+        for name, (_, run) in probes.items():
+            note(name, run())
+        whole, gather = frame()
+        note("frame", whole)
+        note("gather", gather)
+        with without_fetches(light):
+            note("arithmetic", frame()[1])
+    found = {name: median(measured[1:]) for name, measured in seconds.items()}
+    rates = {kind: {name[1]: amount / found[name] for name, (amount, _) in probes.items() if name[0] == kind}
+             for kind in ("copies", "fetch_formats")}
+    return rates | {"bandwidth": max(rates["copies"].values()), "fetches": max(rates["fetch_formats"].values()),
+                    "arithmetic": _all_samples(light.region, passes.size, settings) / found["arithmetic"],
+                    "frame": found["frame"], "gather": found["gather"]}
 
 
-def _copy_rate(format, size):
-    """Bytes a second, read and written, of a copy from texture to texture."""
-    shader = _shader(format, f"""void main() {{
+def _all_samples(region, size, settings):
+    """Samples of a frame, whether they fall inside the picture or not."""
+    sizes = region.level_sizes(*(-(-extent // settings.start) for extent in size), settings.radius)
+    return sum(width * height * region.samples_at(index, settings.samples,
+                                                  len(region.offsets(settings.radius, finest=index == 0)))
+               for index, (width, height) in enumerate(sizes))
+
+
+def _copy(format, size):
+    """A copy from texture to texture: (bytes read and written, function that runs it and returns seconds)."""
+    components, kind = opengl.FORMATS[format]
+    return 2 * size[0] * size[1] * components * int(kind[1]), _dispatch(format, size, f"""void main() {{
         ivec2 p = ivec2(gl_GlobalInvocationID.xy);
         if (p.x < {size[0]} && p.y < {size[1]}) {{ imageStore(target, p, texelFetch(source, p, 0)); }}
     }}""")
-    components, kind = opengl.FORMATS[format]
-    moved = 2 * size[0] * size[1] * components * int(kind[1])
-    return moved / _seconds(shader, format, size)
 
 
-def _fetch_rate(format, size):
-    """Fetches a second where neighbouring threads read neighbouring texels, all at the same offset from their own."""
-    shader = _shader(format, f"""void main() {{
+def _fetches(format, size):
+    """Neighbouring threads read neighbouring texels, all at the same offset from their own: (fetches, function)."""
+    vector = "uvec4" if format.endswith("UI") else "vec4"
+    threads = [-(-extent // GROUP) * GROUP for extent in size]
+    return threads[0] * threads[1] * FETCHES, _dispatch(format, size, f"""void main() {{
         ivec2 p = ivec2(gl_GlobalInvocationID.xy), last = ivec2({size[0] - 1}, {size[1] - 1});
-        {_vector(format)} sum = {_vector(format)}(0);
+        {vector} sum = {vector}(0);
         for (uint k = 0u; k < {FETCHES}u; k++) {{
           uint random = k * 2654435769u;
           ivec2 offset = ivec2(random >> 27u, (random >> 22u) & 31u) - {REACH};
@@ -107,99 +139,22 @@ def _fetch_rate(format, size):
         }}
         if (p.x <= last.x && p.y <= last.y) {{ imageStore(target, p, sum); }}
     }}""")
-    threads = [-(-extent // GROUP) * GROUP for extent in size]
-    return threads[0] * threads[1] * FETCHES / _seconds(shader, format, size)
 
 
-def _vector(format):
-    return "uvec4" if format.endswith("UI") else "vec4"
-
-
-def _shader(format, main):
+def _dispatch(format, size, main):
+    """A function that runs a shader with a thread for each texel of its textures, and returns seconds."""
     info = opengl.CreateInfo()
-    kind = "UINT_2D" if format.endswith("UI") else "FLOAT_2D"
-    info.sampler(0, kind, "source")
-    info.image(0, format, kind, "target", {"WRITE"})
+    info.sampler(0, "UINT_2D" if format.endswith("UI") else "FLOAT_2D", "source")
+    info.image(0, format, "UINT_2D" if format.endswith("UI") else "FLOAT_2D", "target", {"WRITE"})
     info.local_group_size(GROUP, GROUP)
     info.compute_source(main)
-    return opengl.Shader(info)
+    shader, source, target = opengl.Shader(info), opengl.Texture(size, format), opengl.Texture(size, format)
 
-
-def _seconds(shader, format, size):
-    """Median seconds of one dispatch over textures of `size`."""
-    source, target = (opengl.Texture(size, format) for _ in range(2))
-    shader.uniform_sampler("source", source)
-    shader.image("target", target)
-    groups = [-(-extent // GROUP) for extent in size]
-    timers = []
-    for _ in range(1 + REPEATS):
+    def run():
+        shader.uniform_sampler("source", source)
+        shader.image("target", target)
         with opengl._timer() as timer:
-            opengl.dispatch(shader, *groups, 1)
-        timers.append(timer)
-    return median(timer.elapsed for timer in timers[1:]) * 1e-9
+            opengl.dispatch(shader, *(-(-extent // GROUP) for extent in size), 1)
+        return timer.elapsed * 1e-9
 
-
-def _arithmetic_rate(light, passes, camera, settings):
-    """Samples a second of the gather's own shader, with records made up in registers instead of fetched."""
-    region = light.region
-    sizes = region.level_sizes(*(-(-extent // settings.start) for extent in passes.size), settings.radius)
-    samples = sum(width * height * region.samples_at(index, settings.samples,
-                                                     len(region.offsets(settings.radius, finest=index == 0)))
-                  for index, (width, height) in enumerate(sizes))
-    seconds = []
-    with without_fetches(light):
-        for _ in range(1 + REPEATS):
-            with opengl.timed(light) as dispatches:
-                light.gather_indirect(passes, camera, settings)
-            seconds.append(sum(sum(dispatches[name]) for name in gather_passes(light)))
-    return samples / median(seconds[1:])
-
-
-def gather_passes(light):
-    """Names of the passes that gather."""
-    return [name for name, made_of in light.device.PASSES.items() if "gather" in made_of.files]
-
-
-@contextmanager
-def without_fetches(light):
-    """Within the block the passes that gather fetch no records and no offsets; what light they find means nothing."""
-    gather = (light.device.SHADERS / "gather.glsl").read_text()
-
-    class CreateInfo(opengl.CreateInfo):
-        def __init__(self):
-            super().__init__()
-            self.vectors = {}
-
-        def sampler(self, slot, kind, name):
-            super().sampler(slot, kind, name)
-            self.vectors[name] = "uvec4" if kind.startswith("UINT") else "vec4"
-
-        def compute_source(self, text):
-            super().compute_source(_fetchless(text, self.vectors) if gather in text else text)
-
-    gpu_types = light.device.gpu.types
-    light.release()
-    gpu_types.GPUShaderCreateInfo = CreateInfo
-    try:
-        yield
-    finally:
-        gpu_types.GPUShaderCreateInfo = opengl.CreateInfo
-        light.release()
-
-
-def _fetchless(text, vectors):
-    """A shader's text with its fetches made up. A thread reads one record, real numbers, when it starts; each fetch
-    then returns that with its lowest bits flipped by the place asked for, so that the compiler keeps all arithmetic.
-    Offsets are 0 or 1: every sample falls inside the picture."""
-    made_up, start = "", ""
-    for name, vector in vectors.items():
-        bits = {"uvec4": "kept_{0} ^ uvec4(p.x & 1)",
-                "vec4": "uintBitsToFloat(floatBitsToUint(kept_{0}) ^ uvec4(p.x & 1))"}[vector].format(name)
-        if name == "offsets":
-            bits = "vec4(p.x & 1, (p.x >> 1) & 1, 0, 0)"
-        made_up += f"{vector} kept_{name};\n"
-        made_up += f"{vector} made_up_{name}(ivec2 p, int level) {{ return {vector}({bits}); }}\n"
-        start += f"  kept_{name} = texelFetch({name}, ivec2(gl_GlobalInvocationID.xy) % textureSize({name}, 0), 0);\n"
-    text = re.sub(r"\btexelFetch\(\s*(\w+)\s*,", r"made_up_\1(", text)
-    text = text.replace("void main()", "void fetchless()")
-    return f"{made_up}{text}\nvoid main()\n{{\n{start}  fetchless();\n}}\n"
+    return run

@@ -174,7 +174,7 @@ def section(found, settings, size, machine, command):
         f"{settings.samples} samples, radius {settings.radius}; {len(first.seconds)} rounds in one process, the rooms "
         f"in another order each round; {clock()[1]}. Ratios are taken round by round, and their median counts. EEVEE: "
         "one frame of one sample without shadows, on the clock, for contrast.",
-        report.table(("polygons", "lights", "light, s", "ratio", "middle half of the ratios", "EEVEE, s", "ratio"), rows),
+        report.table(("polygons", "lights", "gather, s", "ratio", "middle half of ratios", "EEVEE, s", "ratio"), rows),
     ]) + "\n"
 
 

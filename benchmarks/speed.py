@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 from statistics import median
 
-from . import ceilings, opengl, report, room, speed_report
+from . import ceilings, fetchless, opengl, report, room, speed_report
 
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = 1280, 720
@@ -63,7 +63,7 @@ def measure(light, quick=False):
     }
     for name, setting in (("pixels_light", LIGHT), ("pixels_heavy", HEAVY)):
         growth[name] = cases((size, *setting, RADIUS, size[0] * size[1]) for size in sizes)
-    return {"machine": machine(), "quick": quick, "gather_passes": ceilings.gather_passes(light), "paper": paper,
+    return {"machine": machine(), "quick": quick, "gather_passes": fetchless.gather_passes(light), "paper": paper,
             "rates": rates, "floor": floor, "growth": growth}
 
 

@@ -25,15 +25,13 @@ def folder_of(page):
 
 def samples_a_second(found):
     """(samples inside the picture a second of the gather at quarter/64, the most that the machine's rates allow)."""
-    frame = _frame(found)
-    seconds = sum(median(frame["passes"][name]["seconds"]) for name in found["gather_passes"])
-    samples = sum(stage["samples"] for stage in found["floor"])
-    return samples / seconds, min(found["rates"]["fetches"], found["rates"]["arithmetic"])
+    samples, rates = sum(stage["samples"] for stage in found["floor"]), found["rates"]
+    return samples / rates["gather"], min(rates["fetches"], rates["arithmetic"])
 
 
 def verdict(found):
     """(sentence, whether the aim is kept)."""
-    seconds, floor = median(_frame(found)["gpu"]), sum(stage["seconds"] for stage in found["floor"])
+    seconds, floor = found["rates"]["frame"], sum(stage["seconds"] for stage in found["floor"])
     ratio = seconds / floor
     return (f"{'Kept' if ratio <= AIM else 'MISSED'}: a frame at {setting(_frame(found))} takes {_ms(seconds)} ms on "
             f"the GPU, {ratio:.2f} times its floor of {_ms(floor)} ms. Aim: at most {AIM:g} times.", ratio <= AIM)
@@ -45,10 +43,21 @@ def write(page, files=()):
     folder.mkdir(parents=True, exist_ok=True)
     parts = {}
     for file in files or sorted(folder.glob("*.json")):
-        parts[file.stem] = found = json.loads(file.read_text())
+        parts[file.stem] = found = read(file)
         for name in PLOTS:
             draw(name, found, folder / f"{file.stem}-{name}.png")
     page.write_text(text(parts, folder.name))
+
+
+def read(file):
+    """The numbers of one machine. SystemExit where the file does not hold any."""
+    try:
+        found = json.loads(file.read_text())
+        verdict(found)
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        sys.exit(f"{file} does not hold the numbers of a machine ({type(error).__name__}: {error}). Write it again by "
+                 "'python -m benchmarks.speed' there.")
+    return found
 
 
 def text(parts, folder):
@@ -125,8 +134,9 @@ def _floor(found):
                 *((f"copy {name}, read and written", rate) for name, rate in copies),
                 *((f"fetches {name}", rate) for name, rate in fetches),
                 ("samples by arithmetic alone", f"{_three(rates['arithmetic'] / 1e9)} G/s")]),
-            "Copies are from texture to texture by a compute shader. Fetches are of 16 bytes. Arithmetic is the "
-            "gather's own shader, whose fetches are replaced by numbers already in registers.",
+            "All measured in turn with the frames that the floor is held against, since a machine may be slower at one "
+            "time than at another. Copies are from texture to texture by a compute shader. Fetches are of 16 bytes. "
+            "Arithmetic is the gather's own shader, whose fetches are replaced by numbers already in registers.",
             "    floor = sum over stages of max(bytes / bandwidth, fetches / fetch rate, samples / arithmetic rate)",
             "with the fastest of each. Counted is what the method needs, however it is laid out "
             "(`benchmarks/ceilings.py`): each number of the input read once, each result written once, one fetch of "
@@ -181,9 +191,8 @@ def main():
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE.json", help="numbers; all beside the page")
     parser.add_argument("--out", type=Path, default=Path("docs/speed.md"), help="the page; docs/speed.md")
     options = parser.parse_args()
-    for file in options.files:
-        if not file.exists():
-            parser.error(f"there is no {file}; 'python -m benchmarks.speed' writes one")
+    if not options.files and not any(folder_of(options.out).glob("*.json")):
+        parser.error(f"there are no numbers in {folder_of(options.out)}; 'python -m benchmarks.speed' measures some")
     write(options.out, options.files)
 
 

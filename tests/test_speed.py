@@ -14,17 +14,17 @@ from light_fixtures import light  # noqa: F401  (a fixture)
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT))
 
-from benchmarks import ceilings, constant_cost, report, room, speed, speed_report  # noqa: E402
+from benchmarks import ceilings, constant_cost, fetchless, report, room, speed, speed_report  # noqa: E402
 
 SIZE = 146, 83              # not a multiple of anything
 STANDALONE = f"""
 import json, sys
 import numpy as np
-from benchmarks import ceilings, opengl, room, speed
+from benchmarks import fetchless, opengl, room, speed
 light = opengl.start()
 frame, settings = room.frame(light, *{SIZE}), speed.settings(light, 2, 64)
 gathered = light.gather_indirect(*frame, settings)
-with ceilings.without_fetches(light):
+with fetchless.without_fetches(light):
     made_up = light.gather_indirect(*frame, settings)
 np.savez(sys.argv[1], gathered=gathered, made_up=made_up, after=light.gather_indirect(*frame, settings))
 print(json.dumps(speed.run(light, *frame, settings, wall=True)))
@@ -63,7 +63,7 @@ def test_a_run_adds_up(standalone):
 
 def test_only_the_gather_loses_its_fetches():
     text = "void main()\n{\n  uvec4 a = texelFetch(surfels, p, 0) + texelFetch( surfels , q(1, 2), 0);\n}"
-    changed = ceilings._fetchless(text, {"surfels": "uvec4"})
+    changed = fetchless.fetchless(text, {"surfels": "uvec4"})
     assert changed.count("texelFetch(") == 1 and changed.count("made_up_surfels(") == 3
     assert changed.count("void main()") == 1
 
@@ -104,8 +104,8 @@ def found():
                     "timer": "timer queries"},
         "command": "python -m benchmarks.speed", "quick": False, "gather_passes": ["gather"],
         "paper": [run(4, 64, 28), run(4, 256, 51), run(2, 256, 123), run(2, 64, 67)],
-        "rates": {"bandwidth": 3e9, "fetches": 2e9, "arithmetic": 1.5e9, "copies": {"R32F 8x8": 3e9},
-                  "fetch_formats": {"RGBA32UI": 2e9}},
+        "rates": {"bandwidth": 3e9, "fetches": 2e9, "arithmetic": 1.5e9, "frame": 0.028, "gather": 0.021,
+                  "copies": {"R32F 8x8": 3e9}, "fetch_formats": {"RGBA32UI": 2e9}},
         "floor": [{"stage": "pack", "read": 5e6, "written": 4e6, "fetches": 1e6, "samples": 0, "seconds": 0.003,
                    "limit": "bandwidth"},
                   {"stage": "gather", "read": 1e6, "written": 1e6, "fetches": 11e6, "samples": 10.5e6, "seconds": 0.007,
@@ -150,6 +150,15 @@ def test_machines_stand_side_by_side(found, tmp_path):
     plots = sorted(tmp_path.glob("speed/*.png"))
     assert len(plots) == 8 and all(5_000 < plot.stat().st_size < 150_000 for plot in plots)
     assert all(f"(speed/{plot.name})" in page for plot in plots)
+
+
+def test_files_without_numbers_are_named(tmp_path):
+    file = tmp_path / "speed" / "empty.json"
+    file.parent.mkdir()
+    file.write_text("{}")
+    for broken in (file, tmp_path / "missing.json"):
+        with pytest.raises(SystemExit, match=f"{broken.name} does not hold the numbers"):
+            speed_report.write(tmp_path / "speed.md", [broken])
 
 
 @pytest.fixture(scope="module")
