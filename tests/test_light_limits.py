@@ -50,8 +50,8 @@ def test_broken_pixels_do_not_spread(light, value):
     for number, (place, name) in enumerate(zip(places, names)):
         broken.channels()[name][number % len(broken.channels()[name])][place] = value
         absent.depth[place] = fixtures.BACKGROUND
-    assert broken.repair() == dict.fromkeys(names, 1)
-    assert absent.repair() == {}
+    assert broken.broken() == dict.fromkeys(names, 1)
+    assert absent.broken() == {}
     for start in (1, 2, 4):
         chosen = settings(light, start=start, radius=8)
         picture = light.gather_indirect(broken, camera, chosen)
@@ -68,7 +68,7 @@ def test_values_that_overflow_do_not_spread(light):
     camera = fixtures.camera_for(light, 16, 9)
     passes = fixtures.random_frame(light, 16, 9, holes=0)
     passes.diffuse_color[0][4, 5] = passes.diffuse_direct[0][4, 5] = 1e30
-    assert passes.repair() == {}
+    assert passes.broken() == {}
     picture = light.gather_indirect(passes, camera, settings(light, radius=4))
     assert np.isfinite(picture).all() and not picture[4, 5].any() and picture.any()
 

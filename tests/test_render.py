@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """F12 and -a, end to end from the installed zip: what comes out, and that everything is as before once unticked."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -307,6 +309,54 @@ def test_emission_lights_the_room(scene, tmp_path):
     lit, plain = lit_and_plain(scene, tmp_path)
     white_wall = (lit - plain)[:, 30:34]
     assert white_wall[..., 2].mean() > 0.02 and white_wall[..., 1].max() < 1e-6
+
+
+def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monkeypatch):
+    """Where they lie, from a file laid out as save() has it; by OpenEXR from any other, which also finds the damage."""
+    import OpenEXR
+    passes, reader, read_by_openexr = afterlight.addon.pipeline.passes, OpenEXR.File, []
+
+    def spy(*arguments, **options):
+        read_by_openexr.append(not options.get("header_only"))
+        return reader(*arguments, **options)
+
+    def load(path):
+        read_by_openexr.clear()
+        found = passes.load(str(path), scene.view_layers[0].name, passes.window(scene)[0])
+        return any(read_by_openexr), found.channels()
+
+    def channels(kind=np.float32):
+        return {name: np.ascontiguousarray(pixels, kind) for name, pixels in expected.items()}
+
+    def part(name, pixels):
+        return OpenEXR.Part({"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}, {name: pixels}, name)
+
+    scene.afterlight.enabled = True
+    render(scene, tmp_path / "picture.exr")
+    ours = Path(passes.save(scene))
+    expected = read(ours)
+    plain = {"compression": OpenEXR.NO_COMPRESSION}
+    others = {"compressed": reader({"compression": OpenEXR.ZIP_COMPRESSION}, channels()),
+              "half": reader(plain, channels(np.float16)),
+              "bottom row first": reader(plain | {"lineOrder": OpenEXR.DECREASING_Y}, channels()),
+              "a part a channel": reader([part(*each) for each in channels().items()])}
+    for name, file in others.items():
+        file.write(str(tmp_path / name))
+    monkeypatch.setattr(OpenEXR, "File", spy)
+    for path in (ours, *(tmp_path / name for name in others)):
+        by_openexr, found = load(path)
+        assert by_openexr == (path != ours), path
+        for field, _, name, axes in passes.PASSES:
+            for axis, pixels in zip(axes, found[field], strict=True):
+                true = expected[f"{scene.view_layers[0].name}.{name}.{axis}"]
+                assert pixels.dtype == np.float32
+                assert np.array_equal(pixels, true.astype(np.float16) if path.name == "half" else true)
+    whole = open(ours, "rb").read()
+    for length in (len(whole) - 1, len(whole) // 2, 100, 0):
+        (tmp_path / "cut short").write_bytes(whole[:length])
+        with pytest.raises(passes.Problem, match="could not be read back.*disk"):
+            load(tmp_path / "cut short")
+    passes.discard(ours)
 
 
 def test_no_file_is_left_in_the_temporary_folder(scene, tmp_path):

@@ -30,7 +30,7 @@ class Camera:
 
 @dataclass(eq=False)
 class Passes:
-    """EEVEE's finished passes, rows top first as OpenEXR gives them; every array (H, W) float32, C-contiguous.
+    """EEVEE's finished passes, rows top first as OpenEXR gives them; every array (H, W) float32, of any strides.
 
     depth: planar, metres; background 1e10 (anything above 1e9, or 0 and below, is no surface). normal: world space.
     diffuse_color: albedo. diffuse_direct: direct light without the albedo, as radiance of a white surface.
@@ -61,21 +61,12 @@ class Passes:
             without &= axis == 0
         return bool(without.any())
 
-    def repair(self) -> dict[str, int]:
-        """Pixels that hold NaN or infinity, by pass; empty for sound passes. Changes nothing: the shaders leave
-        such pixels out as emitters and give them no light, so this is only what a message to people needs.
-
-        Cheap for sound passes: a sum of squares is finite exactly when each of its terms is (a value above 1e19
-        overflows it too, and is then counted properly and found sound).
-        """
-        broken = {}
-        for name, arrays in self.channels().items():
-            if all(np.isfinite(np.vdot(array, array)) for array in arrays):
-                continue
-            count = np.count_nonzero(~np.logical_and.reduce([np.isfinite(array) for array in arrays]))
-            if count:
-                broken[name] = int(count)
-        return broken
+    def broken(self) -> dict[str, int]:
+        """How many pixels hold NaN or infinity, by pass; empty for sound passes. The shaders leave such pixels out as
+        emitters, so this is only what a message to people needs."""
+        counts = {name: int(np.count_nonzero(~np.logical_and.reduce([np.isfinite(array) for array in arrays])))
+                  for name, arrays in self.channels().items()}
+        return {name: count for name, count in counts.items() if count}
 
 
 @dataclass(frozen=True)

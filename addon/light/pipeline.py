@@ -46,19 +46,24 @@ class Pyramid:
         return across * up
 
 
-def upload(passes: Passes) -> dict[str, Texture]:
-    """One texture a channel, named as the shaders name them, with four neighbouring pixels of a row in each texel.
-    No copy is made in Python where the width is a multiple of four; other rows are filled up with background."""
+def upload(passes: Passes, broken: dict[str, int] | None = None) -> dict[str, Texture]:
+    """One texture a channel, named as the shaders name them, with four neighbouring pixels of a row in each texel; rows
+    are filled up with background. broken: filled with Passes.broken()."""
     groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal), device.COLOR_CHANNELS: passes.diffuse_color,
               device.LIGHT_CHANNELS: (*passes.diffuse_direct, *passes.emission)}
     width, height = passes.size
     quads = -(-width // 4)
-
-    def rows(array):
-        return np.pad(array, ((0, 0), (0, 4 * quads - width))) if width % 4 else array
-
-    return {name: device.texture(quads, height, data=rows(array))
-            for names, arrays in groups.items() for name, array in zip(names, arrays, strict=True)}
+    plane = np.zeros((height, 4 * quads), np.float32)  # one for all: new memory for each takes longer than the copy
+    textures, sound = {}, True
+    for names, arrays in groups.items():
+        for name, array in zip(names, arrays, strict=True):
+            plane[:, :width] = array
+            # A sum of squares is finite exactly when each of its terms is, but for terms above 1e19: broken() decides.
+            sound = sound and np.isfinite(np.vdot(plane, plane))
+            textures[name] = device.texture(quads, height, data=plane)
+    if broken is not None and not sound:
+        broken |= passes.broken()
+    return textures
 
 
 def pack(channels: dict[str, Texture], passes: Passes, camera: Camera, settings: Settings) -> Pyramid:
@@ -140,7 +145,7 @@ def composite(channels: dict[str, Texture], pyramid: Pyramid, total: Texture) ->
 
 
 def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progress=lambda stage, fraction: False,
-                    timings: dict[str, float] | None = None) -> np.ndarray:
+                    timings: dict[str, float] | None = None, broken: dict[str, int] | None = None) -> np.ndarray:
     """One bounce of indirect light between the surfaces that the passes show.
 
     Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1 m^-2; 0 on
@@ -149,7 +154,7 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
 
     progress(stage, fraction): called between stages and bands with the share of all work done; a true answer raises
     Cancelled. timings: filled with seconds for upload, pyramid, gather, upsample (composite included) and read_back;
-    asking for them waits for the GPU after every stage.
+    asking for them waits for the GPU after every stage. broken: filled with Passes.broken().
     Raises GpuUnavailable where the GPU cannot do it.
     """
     lap = _stopwatch(timings)
@@ -159,7 +164,7 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
             raise Cancelled
 
     report("upload", 0.0)
-    channels = upload(passes)
+    channels = upload(passes, broken)
     lap("upload", channels["emission_b"])
 
     report("pyramid", 0.0)

@@ -125,15 +125,15 @@ class AfterlightEngine(bpy.types.RenderEngine):
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         frame = passes.load(self.file, shot.layer, shot.window)
-        broken = frame.repair()
         shot.spent("read passes", time.perf_counter() - start)
+        start = time.perf_counter()
+        timed, broken = {} if status.wants_stages else None, {}
+        picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed,
+                                        broken=broken)
         for name, count in broken.items():
             self.report({"WARNING"}, f"Afterlight: {count} pixels of {name.replace('_', ' ')} in {shot.layer} are NaN "
                                      "or infinite. They neither give nor get indirect light; look for a material that "
                                      "divides by zero or a light of unbounded strength")
-        start = time.perf_counter()
-        timed = {} if status.wants_stages else None
-        picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed)
         for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
             shot.spent(stage, seconds)
         return picture

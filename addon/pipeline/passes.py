@@ -53,7 +53,8 @@ def load(path, layer, window):
 
     window: (x, y, width, height) in pixels, from the bottom left: the part of the full frame that is rendered. A
     render border without crop leaves black around it in the file; it is cut off here.
-    Returns light.Passes. Raises Problem where OpenEXR, the file or one of the passes can't be had.
+    Returns light.Passes, whose arrays are the file's own memory: it stays in use, removed or not, as long as they do.
+    Raises Problem where OpenEXR, the file or one of the passes can't be had.
     """
     try:
         import OpenEXR
@@ -61,11 +62,15 @@ def load(path, layer, window):
         raise Problem(f"The OpenEXR module can't be imported ({_text(error)}). It comes with the extension: remove "
                       "Afterlight in Preferences > Get Extensions and install it again from its zip") from error
     try:
-        parts = OpenEXR.File(path, separate_channels=True).parts
+        channels = _mapped(path, OpenEXR.File(path, separate_channels=True, header_only=True).header())
+        if channels is None:
+            parts = OpenEXR.File(path, separate_channels=True).parts
+            channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
+        if not channels:  # OpenEXR only prints why
+            raise EOFError("it holds no whole pass")
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
         raise Problem(f"The passes could not be read back from {path} ({_text(error)}). "
                       "The disk of the temporary folder may be full") from error
-    channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
 
     def cut(name):
         pixels = channels[name]
@@ -73,7 +78,7 @@ def load(path, layer, window):
         if pixels.shape != (height, width):
             top = pixels.shape[0] - y - height
             pixels = pixels[top:top + height, x:x + width]
-        return np.ascontiguousarray(pixels, np.float32)
+        return np.asarray(pixels, np.float32)
 
     try:
         found = {field: tuple(cut(f"{layer}.{name}.{axis}") for axis in axes) for field, _, name, axes in PASSES}
@@ -126,6 +131,29 @@ def camera(evaluated, depsgraph, scene):
     return light.Camera(
         rotation=np.linalg.inv(to_world), scale=2 / size / focus,
         offset=(2 * np.array([x, y]) / size - 1 + shift) / focus, orthographic=orthographic)
+
+
+def _mapped(path, header):
+    """{channel: (H, W) float32, rows top first} in the file's own memory, or None where it is not laid out as save()
+    asks for it: OpenEXR must then read it, or say what is wrong with it.
+
+    OpenEXR's reader copies every pass of every layer; here only what is used is touched, and copied once, on its way to
+    the GPU. In a file of one part without compression each row is its number, its size in bytes, and its channels.
+    """
+    channels = header["channels"]
+    (left, top), (right, bottom) = header["dataWindow"]
+    width, height = int(right - left + 1), int(bottom - top + 1)
+    line = 8 + 4 * width * len(channels)
+    data = np.memmap(path, np.uint8, "c")  # private: what is written to the arrays stays out of the file
+    start = data.size - height * line
+    if start <= 0:
+        return None
+    lines = data[start:].reshape(height, line)
+    numbers, sizes = lines[:, :8].copy().view("<i4").T
+    if not np.array_equal(numbers, np.arange(top, bottom + 1)) or np.any(sizes != line - 8):
+        return None
+    planes = lines[:, 8:].view("<f4").reshape(height, len(channels), width)
+    return {channel.name: planes[:, index] for index, channel in enumerate(channels)}
 
 
 @contextmanager
