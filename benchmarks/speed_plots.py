@@ -8,6 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator  # noqa: E402
 
 STARTS = {1: "Full", 2: "Half", 4: "Quarter"}
 
@@ -50,7 +51,7 @@ def _pixels(axes, found):
         axes.loglog(pixels, [times[-1] * n / pixels[-1] for n in pixels], ":", color=line.get_color(),
                     label="in proportion to pixels")
     axes.set_xlabel("megapixels")
-    _finish(axes)
+    _finish(axes, [run["size"][0] * run["size"][1] / 1e6 for run in found["growth"]["pixels_light"]])
 
 
 def _samples(axes, found):
@@ -59,7 +60,7 @@ def _samples(axes, found):
                 label=f"{STARTS[runs[0]['start']]}, radius {runs[0]['radius']}")
     axes.loglog([run["samples"] for run in runs], _gather(runs, found), "s--", label="of it the gather")
     axes.set_xlabel("samples at the finest level")
-    _finish(axes)
+    _finish(axes, [run["samples"] for run in runs])
 
 
 def _radius(axes, found):
@@ -70,7 +71,7 @@ def _radius(axes, found):
         axes.annotate(f"{run['levels']} levels", (run["radius"], time), (0, 6), textcoords="offset points", ha="center")
     axes.margins(0.12, 0.2)
     axes.set_xlabel("radius, texels")
-    _finish(axes)
+    _finish(axes, [run["radius"] for run in runs])
 
 
 def _times(runs):
@@ -81,11 +82,12 @@ def _gather(runs, found):
     return [1000 * sum(median(run["passes"][name]["seconds"]) for name in found["gather_passes"]) for run in runs]
 
 
-def _finish(axes):
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter("{x:g}")
-        axis.set_tick_params(which="minor", labelsize=7)
+def _finish(axes, measured_at):
+    axes.set_xticks(measured_at, [f"{value:.3g}" if value < 100 else f"{value}" for value in measured_at])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.set_ylabel("GPU time, ms")
     axes.grid(True, which="both", alpha=0.3)
     axes.legend()
