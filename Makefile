@@ -25,8 +25,11 @@ bench: package   ## what it costs: beside EEVEE, by polygons and lights, and alo
 speed: setup     ## the last of these: the light alone, pass by pass, on this machine's GPU
 	$(python) -m benchmarks.speed
 
+accuracy: package ## error beside EEVEE's own GI and Cycles, and where it comes from; half an hour the first time
+	$(python) -m benchmarks.accuracy --out docs/accuracy --page docs/accuracy.md
+
 clean:           ## remove what was made, but for .venv and the downloaded wheels
 	rm -rf dist build .pytest_cache .hypothesis
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test package demo samples bench speed clean
+.PHONY: help setup test package demo samples bench speed accuracy clean
