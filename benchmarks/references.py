@@ -151,6 +151,8 @@ def key(scene, bounces, source):
     settings = {"source": source, "size": [render.resolution_x, render.resolution_y], "frame": scene.frame_current,
                 "layer": layer(scene).name, "bounces": bounces, "filter": render.filter_size, "cycles": SETTINGS,
                 "blender": bpy.app.version_string, "build": bpy.app.build_hash.decode()}
+    if shadowless(scene):
+        settings["shadowless"] = "without multiple importance sampling"
     return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()
 
 
@@ -180,6 +182,7 @@ def as_cycles(scene, bounces, samples, seed=0):
     changes += [(layer(scene), f"use_pass_{name}", True) for name in PASSES]
     lamps = [thing for thing in shown(scene) if thing.type == "LIGHT"]
     changes += [(lamp, "visible_camera", False) for lamp in lamps]  # EEVEE shows none
+    changes += [(light.cycles, "use_multiple_importance_sampling", False) for light in shadowless(scene)]
     if bounces == 0:
         changes += [(mesh, "visible_diffuse", False) for mesh in emissive(scene)]
     if bounces == MESHES:
@@ -228,8 +231,15 @@ def shown(scene):
                   key=lambda thing: thing.name_full)
 
 
+def shadowless(scene):
+    """Light datablocks that cast no shadows. Cycles' rays towards them pass through all surfaces, but those that it mixes
+    in by multiple importance sampling do not: what arrives would then depend on how many other lights there are."""
+    return sorted({thing.data for thing in shown(scene) if thing.type == "LIGHT" and not thing.data.use_shadow},
+                  key=lambda light: light.name_full)
+
+
 def emissive(scene):
-    """Those of them with a material that sends light."""
+    """Objects of `scene` and of what it instances with a material that sends light."""
     return [thing for thing in shown(scene) if thing.type in SHINES
             and any(slot.material and sends_light(slot.material.node_tree) for slot in thing.material_slots)]
 

@@ -138,6 +138,24 @@ def test_a_reference_is_kept_and_healed(shot, tmp_path, capsys):
     assert "damaged" in capsys.readouterr().err
 
 
+def test_direct_light_of_lamps_and_of_meshes_is_all_there_is(shot):
+    """Each alone adds up to both together, even for many lamps without shadows that stand behind a shining ceiling, and
+    neither leaves a trace in the scene."""
+    lamp = bpy.data.lights["Lamp"]
+    lamp.use_shadow = False
+    for index in range(64):
+        scenes.put(lamp, (index % 8 * 0.4 - 1.4, index // 8 * 0.4 - 1.4, 1))
+    shader = scenes.wall(scenes.matt("Ceiling", (0, 0, 0)), (0, 0, 0.8), (0, 0, 0)).active_material.node_tree.nodes[
+        "Principled BSDF"]
+    shader.inputs["Emission Color"].default_value, shader.inputs["Emission Strength"].default_value = (1, 1, 1, 1), 2
+    references.render(shot, 1, 1, seed=0)  # the first render makes the image Render Result
+    before = scenes.written_down()
+    lamps, meshes, both = (references.render(shot, bounces, 256, seed=3)["direct"].mean()
+                           for bounces in (0, references.MESHES, 1))
+    assert scenes.written_down() == before
+    assert meshes > 0.02 * both and lamps + meshes == pytest.approx(both, rel=0.01)
+
+
 def test_the_key_follows_file_and_settings(shot, tmp_path):
     path = tmp_path / "box.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
