@@ -126,7 +126,9 @@ def study_parts(study):
     rows = [[row["name"], *(number(row["l1"].get(name)) for name in study["scenes"]), number(row["mean"]),
              number(row["cost"], 2)] for row in study["rows"]]
     return ["## EEVEE's ray tracing at its best", f"What *best* above means: the settings with the least mean relative L1 "
-            "of the indirect light, found by", f"    {study['command']}",
+            f"of the indirect light, at {study['size'][0]} x {study['size'][1]} and {study['samples']} samples (its light grows with "
+            "the samples, so its errors here are above those of the tables), found by",
+            f"    {study['command']}", "Settings whose numbers equal the default's do not touch diffuse surfaces.",
             grid(["settings (others at their defaults)", *study["scenes"], "mean", "cost"], rows)]
 
 
@@ -172,7 +174,7 @@ def sheet(rendered, indirect, final, surface, path):
     shown = [each for each in rendered if each.final is not None and each.group in SHEET_GROUPS]
     rows = [("Cycles", final, indirect), *((each.name, each.final, each.indirect) for each in shown)]
     height, width = surface.shape
-    figure, axes = plt.subplots(len(rows), 3, figsize=(10, len(rows) * 3.35 * height / width), dpi=100, squeeze=False,
+    figure, axes = plt.subplots(len(rows), 3, figsize=(10, len(rows) * 3.35 * height / width), dpi=80, squeeze=False,
                                 layout="constrained")
     white, scale = exposure(final[surface]), indirect[surface].mean()
     for (name, image, light), line in zip(rows, axes, strict=True):

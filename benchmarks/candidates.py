@@ -20,7 +20,8 @@ ONE_ENGINE = {"ShaderNodeBsdfHair", "ShaderNodeBsdfHairPrincipled", "ShaderNodeB
               "ShaderNodeShaderToRGB"}
 # Found by `python -m benchmarks.eevee_study`: what is not named here is at Blender's default.
 BEST = {"ray_tracing_options.trace_max_roughness": 1.0, "ray_tracing_options.screen_trace_thickness": 2.0,
-        "ray_tracing_options.resolution_scale": "1"}
+        "ray_tracing_options.resolution_scale": "1", "ray_tracing_options.screen_trace_quality": 1.0}
+STARTUP = {"use_fast_gi": True}   # where Blender's startup file differs from a scene that a script makes
 CYCLES_SAMPLES = 1, 4, 16
 SEED = 1 << 20               # of these: none that a reference uses
 
@@ -126,15 +127,15 @@ def all_of(afterlight, bounces, presets=()):
 
 @contextmanager
 def traced(scene, settings):
-    """EEVEE's ray tracing as a new scene has it, but for `settings`, {property below scene.eevee: value}."""
+    """EEVEE's ray tracing as Blender starts with it, but for `settings`, {property below scene.eevee: value}."""
     import bpy
     # property_unset() does nothing to these, and their RNA defaults are not what Blender starts with.
     fresh = bpy.data.scenes.new("Fresh")
     try:
-        wanted = {path: fresh.path_resolve(f"eevee.{path}") for path in tracing_settings(fresh.eevee)} | settings
+        wanted = {path: fresh.path_resolve(f"eevee.{path}") for path in tracing_settings(fresh.eevee)}
     finally:
         bpy.data.scenes.remove(fresh)
-    for path, value in (wanted | {"use_raytracing": True}).items():
+    for path, value in (wanted | STARTUP | settings | {"use_raytracing": True}).items():
         owner, _, name = path.rpartition(".")
         setattr(scene.eevee.path_resolve(owner) if owner else scene.eevee, name, value)
     try:

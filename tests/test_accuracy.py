@@ -156,6 +156,21 @@ def test_direct_light_of_lamps_and_of_meshes_is_all_there_is(shot):
     assert meshes > 0.02 * both and lamps + meshes == pytest.approx(both, rel=0.01)
 
 
+def test_default_ray_tracing_is_that_of_a_new_file(fresh):
+    """Whatever was set before; and what is asked for is set."""
+    eevee, candidates = fresh.eevee, accuracy.candidates
+
+    def state():
+        return {path: eevee.path_resolve(path) for path in candidates.tracing_settings(eevee)}
+
+    startup = state()
+    with candidates.traced(fresh, candidates.BEST):
+        assert eevee.use_raytracing and state() == pytest.approx(startup | candidates.BEST)
+    assert not eevee.use_raytracing and state() != startup
+    with candidates.traced(fresh, {}):
+        assert state() == startup
+
+
 def test_the_key_follows_file_and_settings(shot, tmp_path):
     path = tmp_path / "box.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
