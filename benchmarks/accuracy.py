@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How close EEVEE, its ray tracing and Afterlight come to Cycles, in tables and pictures, for any .blend files.
 
-    .venv/bin/python -m benchmarks.accuracy [FILE.blend ...] [--out DIR] [--size 320x180] [--bounces 4] [--samples 32]
+    .venv/bin/python -m benchmarks.accuracy [FILE.blend ...] [--out DIR] [--size 320x180] [--bounces 4] [--samples 16]
 
 Exit code 0 where all was measured; 1 where a number was refused because the reference is too noisy, or a render
 failed; otherwise 2 where a file cannot be measured. The files themselves are only read."""
@@ -83,8 +83,7 @@ def masks_of(truth, surface):
 def table(truth, rendered, kind, mask, flip=True):
     """The rows of one kind of surface. A number that the reference's noise could have made is never given."""
     pictures = {"indirect": truth.indirect(truth.longest), "final": truth.final(truth.longest)}
-    noise = {number: truth.noise(number, mask) for number in truth.of if number != references.MESHES}
-    first, rows = rendered[0], []
+    noise, first, rows = truth.noise(mask), rendered[0], []
     for each in rendered:
         row = {"name": each.name, "group": each.group}
         rows.append(row)
@@ -96,13 +95,12 @@ def table(truth, rendered, kind, mask, flip=True):
             row["cost"] = median(own / base for own, base in zip(each.seconds, first.seconds, strict=True))
         for picture in KINDS:
             found = metrics.compare(getattr(each, picture), pictures[picture], mask, flip)
-            own = {number: noise[number][picture] for number in {truth.longest, each.bounces} & noise.keys()}
-            spoilt = [number for number, level in own.items()
-                      if None not in (level, found["l1"]) and found["l1"] < CLEARLY * level]
+            level = (noise if each.bounces is None else truth.noise(mask, each.bounces))[picture]
+            spoilt = None not in (level, found["l1"]) and found["l1"] < CLEARLY * level
             row[picture] = found if not spoilt else {
-                "refused": f"the reference's noise, {max(own[number] for number in spoilt):.4f}, is over a fifth of the "
-                           "error", "bounces": spoilt}
-    return {"surface": kind, "share": float(mask.mean()), "noise": noise[truth.longest], "rows": rows}
+                "refused": f"the reference's noise, {level:.4f}, is over a fifth of the error",
+                "bounces": sorted({truth.longest, each.bounces} - {None})}
+    return {"surface": kind, "share": float(mask.mean()), "noise": noise, "rows": rows}
 
 
 def too_noisy(one_table):
@@ -204,9 +202,9 @@ def parse(arguments):
     parser.add_argument("--page", type=Path, help="the tables in Markdown; accuracy.md in that folder")
     parser.add_argument("--size", type=picture_size, default=(320, 180), metavar="WxH", help="320x180")
     parser.add_argument("--bounces", type=int, default=4, help="diffuse bounces of the reference; 4")
-    parser.add_argument("--samples", type=int, default=32, help="EEVEE's; 32")
+    parser.add_argument("--samples", type=int, default=16, help="EEVEE's; 16")
     parser.add_argument("--presets", default="", help="Afterlight's, as draft,paper; all that there are")
-    parser.add_argument("--rounds", type=int, default=3, help="timed frames of each; 3")
+    parser.add_argument("--rounds", type=int, default=2, help="timed frames of each; 2")
     parser.add_argument("--first-samples", type=int, default=64, help="of a reference, to begin with; 64")
     parser.add_argument("--most-samples", type=int, default=4096, help="of a reference, at most; 4096")
     parser.add_argument("--no-causes", action="store_true", help="leave out where the error comes from")

@@ -20,22 +20,27 @@ import session  # noqa: E402
 
 from . import candidates, metrics, references  # noqa: E402
 
-BOUNCES, SAMPLES, HALF = 4, 16, 128
+BOUNCES, SAMPLES, HALF = 4, 4, 64
 ROUGH, THICK, SCALE = (f"ray_tracing_options.{name}" for name in (
     "trace_max_roughness", "screen_trace_thickness", "resolution_scale"))
+QUALITY, DENOISE = "ray_tracing_options.screen_trace_quality", "ray_tracing_options.use_denoise"
 SCREEN = {ROUGH: 1.0}        # screen tracing for every roughness
+FULL = SCREEN | {SCALE: "1"}
 TRIED = {
     "default": {},
     "Fast GI, thickness 2 m": {"fast_gi_thickness_near": 2.0},
-    "Fast GI, 8 steps, 4 rays, full resolution": {"fast_gi_step_count": 8, "fast_gi_ray_count": 4,
-                                                  "fast_gi_resolution": "1"},
+    "Fast GI, thickness 2 m, 16 steps, 8 rays, full resolution": {
+        "fast_gi_thickness_near": 2.0, "fast_gi_step_count": 16, "fast_gi_ray_count": 8, "fast_gi_resolution": "1"},
     "screen tracing": SCREEN,
     "screen tracing, thickness 0.5 m": SCREEN | {THICK: 0.5},
     "screen tracing, thickness 2 m": SCREEN | {THICK: 2.0},
     "screen tracing, thickness 8 m": SCREEN | {THICK: 8.0},
-    "screen tracing, thickness 2 m, full resolution": SCREEN | {THICK: 2.0, SCALE: "1"},
-    "screen tracing, thickness 2 m, full resolution, precision 1":
-        SCREEN | {THICK: 2.0, SCALE: "1", "ray_tracing_options.screen_trace_quality": 1.0},
+    "screen tracing, thickness 2 m, full resolution": FULL | {THICK: 2.0},
+    "screen tracing, thickness 2 m, full resolution, precision 1": FULL | {THICK: 2.0, QUALITY: 1.0},
+    "screen tracing, thickness 8 m, precision 1": SCREEN | {THICK: 8.0, QUALITY: 1.0},
+    "screen tracing, thickness 8 m, full resolution, precision 1": FULL | {THICK: 8.0, QUALITY: 1.0},
+    "screen tracing, thickness 8 m, full resolution, precision 1, not denoised":
+        FULL | {THICK: 8.0, QUALITY: 1.0, DENOISE: False},
 }
 
 
@@ -50,7 +55,7 @@ def measure(path, size, afterlight):
     truth = references.Truth(scene, BOUNCES, references.source_key(path))
     truth.extend(BOUNCES, HALF)
     mask = (plain.passes.depth < 1e9) & ~truth.of[BOUNCES].not_diffuse()
-    print(f"{path.stem}: noise of the reference {truth.noise(BOUNCES, mask)['indirect']:.3f}", file=sys.stderr)
+    print(f"{path.stem}: noise of the reference {truth.noise(mask)['indirect']:.3f}", file=sys.stderr)
     base = median(tried[0].seconds)
     return {each.name: (metrics.compare(each.indirect, truth.indirect(BOUNCES), mask, flip=False)["l1"],
                         median(each.seconds) / base) for each in tried[1:]}
@@ -81,7 +86,7 @@ def main(arguments):
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(json.dumps({
         "command": shlex.join([".venv/bin/python", "-m", "benchmarks.eevee_study", *arguments]),
-        "scenes": list(found), "rows": rows}, indent=1) + "\n")
+        "size": options.size, "samples": SAMPLES, "scenes": list(found), "rows": rows}, indent=1) + "\n")
     for row in rows:
         print(f"{row['mean']:.3f}  {row['cost']:.2f}  {row['name']}", file=sys.stderr)
     best = min(rows, key=lambda row: row["mean"])

@@ -127,10 +127,15 @@ class Truth:
         halves = self.of[bounces].halves
         return halves[index]["final"] if index is not None else self.of[bounces].mean("final")
 
-    def noise(self, bounces, mask):
-        """{"indirect", "final"}: relative L1 error by its own noise."""
-        return {"indirect": metrics.noise(*(self.indirect(bounces, index) for index in range(2)), mask),
-                "final": metrics.noise(*(self.final(bounces, index) for index in range(2)), mask)}
+    def noise(self, mask, without=None):
+        """{"indirect", "final"}: relative L1 error of the longest reference by its own noise. Given a number of bounces,
+        that of its difference from the longest: much of their noise is the same."""
+        found = {}
+        for kind, picture in (("indirect", self.indirect), ("final", self.final)):
+            first, second = (picture(self.longest, index) for index in range(2))
+            shift = 0 if without is None else (picture(without, 1) - picture(without, 0)) / 2
+            found[kind] = metrics.noise(first + shift, second - shift, mask)
+        return found
 
 
 def source_key(path):

@@ -96,7 +96,7 @@ class MadeUpTruth:
 
     final = indirect
 
-    def noise(self, bounces, mask):
+    def noise(self, mask, without=None):
         return {"indirect": self.level, "final": self.level}
 
 
@@ -154,6 +154,15 @@ def test_direct_light_of_lamps_and_of_meshes_is_all_there_is(shot):
                            for bounces in (0, references.MESHES, 1))
     assert scenes.written_down() == before
     assert meshes > 0.02 * both and lamps + meshes == pytest.approx(both, rel=0.01)
+
+
+def test_noise_that_two_references_share_does_not_count_twice(shot, tmp_path):
+    """Less of the same light has less noise above it: none above all of it, the whole noise above none of it."""
+    truth, mask = references.Truth(shot, 2, "a file", tmp_path), np.ones((9, 16), bool)
+    for bounces in truth.of:
+        truth.extend(bounces, 8)
+    none, one, all_of_it = (truth.noise(mask, without)["indirect"] for without in (0, 1, 2))
+    assert all_of_it == pytest.approx(0, abs=1e-6) and none == truth.noise(mask)["indirect"] > one > 0
 
 
 def test_default_ray_tracing_is_that_of_a_new_file(fresh):
