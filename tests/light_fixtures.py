@@ -16,9 +16,20 @@ BACKGROUND = np.float32(1e10)
 ROTATION_LOOKING_DOWN_MINUS_Z = np.eye(3)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def light(afterlight):
-    """addon.light of the installed extension."""
+    """addon.light of the installed extension, with a GPU context to run it in.
+
+    Outside a render Blender leaves whatever context was last active: none after a render by an engine in Python, its own
+    after one by EEVEE or Workbench."""
+    try:
+        gpu.types.GPUTexture((1, 1))
+    except RuntimeError:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        scene = bpy.context.scene
+        scene.render.engine, scene.camera = "BLENDER_WORKBENCH", scenes.put(bpy.data.cameras.new("Camera"))
+        scene.render.resolution_x = scene.render.resolution_y = 4
+        bpy.ops.render.render()
     return importlib.import_module(f"{afterlight.__name__}.addon.light")
 
 

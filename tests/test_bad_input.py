@@ -162,14 +162,18 @@ def test_nan_and_infinity_in_a_pass(scene, plain, afterlight, monkeypatch, tmp_p
         passes = load(*arguments)
         passes.diffuse_direct[0][5:8, 5:8] = np.nan
         passes.emission[1][20, 30] = np.inf
+        passes.normal[2][10:12, 40:42] = np.nan
         return passes
 
     monkeypatch.setattr(engine.passes, "load", spoiled)
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     gain = lit - plain
-    assert np.isfinite(lit).all() and not gain[5:8, 5:8].any() and gain.mean() > 0
+    assert np.isfinite(lit).all() and gain.mean() > 0
+    # What has no surface gets no light; what has no direct light only sends none, and gets that of its neighbours.
+    assert not gain[10:12, 40:42].any() and gain[9, 40:42].all() and gain[6, 6].all()
     printed = "".join(capfd.readouterr())
-    assert "9 pixels of diffuse direct" in printed and "1 pixels of emission" in printed
+    for words in ("9 pixels of diffuse direct", "1 pixels of emission", "4 pixels of normal"):
+        assert words in printed
     assert scene.afterlight.report == "" and "Traceback" not in printed
 
 

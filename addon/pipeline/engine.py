@@ -132,8 +132,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
                                         broken=broken)
         for name, count in broken.items():
             self.report({"WARNING"}, f"Afterlight: {count} pixels of {name.replace('_', ' ')} in {shot.layer} are NaN "
-                                     "or infinite. They neither give nor get indirect light; look for a material that "
-                                     "divides by zero or a light of unbounded strength")
+                                     "or infinite. They send no indirect light; look for a material that divides by "
+                                     "zero or a light of unbounded strength")
         for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
             shot.spent(stage, seconds)
         return picture
