@@ -2,9 +2,9 @@
 """What Blender sees of Afterlight, registered in the order in which the parts need one another."""
 
 from . import operators, panel, settings
-from .pipeline import engine, handlers
+from .pipeline import engine, handlers, relight
 
-PARTS = (settings, engine, operators, panel, handlers)
+PARTS = (settings, engine, relight, operators, panel, handlers)
 
 
 def register():

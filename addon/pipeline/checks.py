@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import wiring
+from . import relight, wiring
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ def findings(scene):
     if wiring.is_helper(scene):
         lit = wiring.source(scene)
         return [Finding(f'This scene only serves to light "{lit.name if lit else "another"}". Render that one')]
-    if render.engine != "BLENDER_EEVEE":
+    if render.engine != "BLENDER_EEVEE" and not relight.is_replayed(scene):
         engine = render.engine.removeprefix("BLENDER_").title()
         found.append(Finding(f"Indirect Light works on EEVEE's passes, and the render engine is {engine}. Set Render "
                              "Engine to EEVEE, or untick Indirect Light"))

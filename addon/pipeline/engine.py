@@ -3,7 +3,8 @@
 the compositor runs; what it returns is the indirect light of that very frame.
 
 A frame, from passes to picture: update() looks at the scene while Blender keeps it still; render() saves the passes,
-loads those of the view layer at hand, gathers (light/pipeline.py) and hands the result back as the pass Indirect.
+loads those of the view layer at hand, gathers (light/pipeline.py) and hands the result back as the pass Indirect. Where
+a frame is lit again (relight.py), the scene itself has this engine for a moment and hands EEVEE's passes back.
 """
 
 import time
@@ -14,7 +15,7 @@ import bpy
 import numpy as np
 
 from .. import light, settings
-from . import checks, passes, status, wiring
+from . import checks, passes, relight, status, wiring
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -27,6 +28,7 @@ class Shot:
     scene: bpy.types.Scene
     layer: str
     window: tuple
+    again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
     camera: light.Camera = None
     settings: light.Settings = None
     problem: str = ""
@@ -47,30 +49,37 @@ class AfterlightEngine(bpy.types.RenderEngine):
     file = ""  # the saved passes of the frame, between its first view layer and its last
 
     def update_render_passes(self, scene, layer):
-        self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
+        if wiring.is_helper(scene):
+            self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
+        else:
+            relight.register_passes(self, scene, layer)
 
     def update(self, data, depsgraph):
         """Look at the scene: Blender holds the interface off while this runs, so it is short."""
         before, self.shot = self.shot, None
-        if self.idle:
+        if self.idle or relight.is_replayed(depsgraph.scene):
             return
         source = wiring.source(depsgraph.scene)
         if source is None:
             self._fail(depsgraph.scene, "This engine works for Afterlight's helper scenes only. Set Render Engine to "
                                         "EEVEE and tick Indirect Light")
             return
-        self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0])
-        if before and self.file:  # another view layer of the same frame
+        again = relight.kept(source) if relight.is_replayed(source) else None
+        self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0], again)
+        if before and (self.file or again):  # another view layer of the same frame
             shot.seconds = before.seconds
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
         if not shot.problem:
-            shot.settings = settings.light_settings(source.afterlight, source.frame_current)
-            shot.camera = self._look(depsgraph, source)
+            frame = again.frame if again else source.frame_current
+            shot.settings = settings.light_settings(source.afterlight, frame)
+            shot.camera = again.camera if again else self._look(depsgraph, source)
 
     def render(self, depsgraph):
         """Gather, and hand back the pass. Whatever happens the pass is there, black if it must be."""
-        shot = self.shot
+        shot, scene = self.shot, depsgraph.scene
         if shot is None:
+            if relight.is_replayed(scene):
+                relight.replay(self, scene, depsgraph.view_layer.name)
             return
         picture = None
         try:
@@ -95,10 +104,12 @@ class AfterlightEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, f"Afterlight: {text}")
 
     def render_frame_finish(self):
-        """All view layers of the frame are done: their passes' file is no longer needed."""
-        if self.file:
+        """All view layers of the frame are done: their passes are kept, to be lit again."""
+        if self.file and self.shot and self.shot.camera:
+            relight.keep(self.shot.scene, self.file, self.shot.camera)
+        elif self.file:
             passes.discard(self.file)
-            self.file = ""
+        self.file = ""
 
     def _look(self, depsgraph, source):
         """light.Camera of the frame. `source`'s camera is evaluated through our own depsgraph, with nothing else of
@@ -119,12 +130,13 @@ class AfterlightEngine(bpy.types.RenderEngine):
 
     def _gather(self, shot):
         start = time.perf_counter()
-        if not self.file:  # the first view layer of the frame saves the passes of all
+        if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
             self._progress("Saving passes", 0.0)
+            relight.forget(shot.scene.session_uid)
             self.file = passes.save(shot.scene)
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
-        frame = passes.load(self.file, shot.layer, shot.window)
+        frame = passes.load(shot.again.path if shot.again else self.file, shot.layer, shot.window)
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}

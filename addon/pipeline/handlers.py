@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, nodes, passes, status, wiring
+from . import checks, nodes, passes, relight, status, wiring
 from .engine import AfterlightEngine
 
 
@@ -27,6 +27,7 @@ def follow_all(*_):
     for scene in _lit_scenes():
         wiring.follow(scene)
     wiring.clean_up()
+    relight.forget_deleted()
 
 
 @persistent

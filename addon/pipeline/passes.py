@@ -56,6 +56,46 @@ def load(path, layer, window):
     Returns light.Passes, whose arrays are the file's own memory: it stays in use, removed or not, as long as they do.
     Raises Problem where OpenEXR, the file or one of the passes can't be had.
     """
+    cut = read(path, window)
+    try:
+        found = {field: tuple(cut(f"{layer}.{name}.{axis}") for axis in axes) for field, _, name, axes in PASSES}
+    except KeyError as error:
+        raise Problem(f"The render has no pass {_text(error)}. Press Repair in the Indirect Light panel, "
+                      "then render again") from error
+    found["depth"], = found["depth"]
+    return light.Passes(**found)
+
+
+def read(path, window):
+    """A function from the name of a channel ("ViewLayer.Normal.X") of a file that save() wrote to its (H, W) float32, rows
+    top first, or KeyError. window, Problem: as load() has them."""
+    channels = _channels(path)
+
+    def cut(name):
+        pixels = channels[name]
+        x, y, width, height = window
+        if pixels.shape != (height, width):
+            top = pixels.shape[0] - y - height
+            pixels = pixels[top:top + height, x:x + width]
+        return np.asarray(pixels, np.float32)
+    return cut
+
+
+def contents(path, layers):
+    """{view layer: [(pass, its channels in Blender's order)]} of a file that save() wrote."""
+    found = {}
+    for name in _channels(path):
+        of = max((layer for layer in layers if name.startswith(f"{layer}.")), key=len, default=None)
+        if of is not None:  # the file holds the compositor's picture as well
+            kind, _, channel = name.removeprefix(f"{of}.").rpartition(".")
+            found.setdefault(of, {}).setdefault(kind, []).append(channel)
+    order = "RGBXYZWUVA"
+    return {layer: [(kind, "".join(sorted(channels, key=lambda channel: order.find(channel.upper()))))
+                    for kind, channels in of.items()] for layer, of in found.items()}
+
+
+def _channels(path):
+    """{channel: (height, width) float32, rows top first} of a file that save() wrote. Raises Problem."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -68,25 +108,10 @@ def load(path, layer, window):
             channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
         if not channels:  # OpenEXR only prints why
             raise EOFError("it holds no whole pass")
+        return channels
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
         raise Problem(f"The passes could not be read back from {path} ({_text(error)}). "
                       "The disk of the temporary folder may be full") from error
-
-    def cut(name):
-        pixels = channels[name]
-        x, y, width, height = window
-        if pixels.shape != (height, width):
-            top = pixels.shape[0] - y - height
-            pixels = pixels[top:top + height, x:x + width]
-        return np.asarray(pixels, np.float32)
-
-    try:
-        found = {field: tuple(cut(f"{layer}.{name}.{axis}") for axis in axes) for field, _, name, axes in PASSES}
-    except KeyError as error:
-        raise Problem(f"The render has no pass {_text(error)}. Press Repair in the Indirect Light panel, "
-                      "then render again") from error
-    found["depth"], = found["depth"]
-    return light.Passes(**found)
 
 
 def discard(path):
