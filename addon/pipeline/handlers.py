@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, nodes, passes, relight, status, wiring
+from . import checks, leftovers, nodes, passes, relight, status, wiring
 from .engine import AfterlightEngine
 
 
@@ -88,9 +88,11 @@ def register():
     for event, handler in HANDLERS:
         getattr(bpy.app.handlers, event).append(handler)
     status.register()
+    leftovers.register()
 
 
 def unregister():
+    leftovers.unregister()
     status.unregister()
     for event, handler in HANDLERS:
         if handler in getattr(bpy.app.handlers, event):

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from .. import light
+from . import leftovers
 from .status import Problem
 
 # What the gather reads: light.Passes' field, the view layer's switch, the pass and its channels in the file.
@@ -26,7 +27,8 @@ def save(scene):
     Blender hands the pixels of a render to Python in no other way: a multilayer EXR, uncompressed, takes a tenth of
     a second at 1280 x 720. Raises Problem where it can't be written.
     """
-    path = os.path.join(bpy.app.tempdir, f"afterlight_{scene.session_uid}.exr")
+    path = file_path(scene)
+    leftovers.claim(bpy.app.tempdir)
     cure = ("Free some space there, or choose another folder in Preferences > File Paths > Temporary Files "
             "and restart Blender")
     try:
@@ -41,6 +43,11 @@ def save(scene):
     if not os.path.exists(path):
         raise Problem(f"The passes could not be written to {bpy.app.tempdir}. {cure}")
     return path
+
+
+def file_path(scene):
+    """Where save() writes the passes of `scene`: the only files that Afterlight makes while it renders."""
+    return os.path.join(bpy.app.tempdir, f"{leftovers.PREFIX}{scene.session_uid}.exr")
 
 
 def render_result():
