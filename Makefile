@@ -2,13 +2,16 @@
 python := .venv/bin/python
 
 help:            ## this list
-	@sed -n 's/^\([a-z]*\):[^#]*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 18
+	@sed -n 's/^\([a-z-]*\):[^#]*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 18
 
 setup:           ## .venv with Blender's module, tests' packages and what they need from the system
 	@PYTHON='$(PYTHON)' tools/setup.sh
 
 test: setup      ## every test, under 15 minutes on two cores; make test PYTEST='tests/test_package.py -k zip' for some
 	$(python) -m pytest $(PYTEST)
+
+desktop-test: package ## Afterlight in a full Blender's window, as a person works it; needs Linux and root, 2 GB the first time
+	@tools/desktop.sh $(python) -m pytest --confcutdir=tests/desktop $(or $(PYTEST),tests/desktop)
 
 package: setup   ## dist/afterlight-<version>.zip, to be installed in Blender
 	$(python) tools/extension.py package
@@ -32,4 +35,4 @@ clean:           ## remove what was made, but for .venv and the downloaded wheel
 	rm -rf dist build .pytest_cache .hypothesis
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test package demo samples bench speed accuracy clean
+.PHONY: help setup test desktop-test package demo samples bench speed accuracy clean

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Blender in a window for each GPU backend, kept through all tests of it; no test may leave a traceback behind."""
+
+import os
+import shutil
+
+import extension
+import pytest
+import steps
+from window import ROOT, Computer, Window
+
+FOLDER = ROOT / "build" / "desktop"
+
+
+def pytest_configure():
+    if "AFTERLIGHT_DESKTOP" not in os.environ:
+        pytest.exit("these tests need a full Blender: run them by 'make desktop-test'", 3)
+
+
+@pytest.fixture(scope="session")
+def package():
+    return extension.package()
+
+
+@pytest.fixture(scope="session", params=["opengl", "vulkan"])
+def computer(request):
+    folder = FOLDER / request.param
+    shutil.rmtree(folder, ignore_errors=True)
+    return Computer(folder, request.param)
+
+
+@pytest.fixture(scope="session")
+def session(computer):
+    window = Window(computer)
+    yield window
+    window.close()
+
+
+@pytest.fixture
+def window(session):
+    """The running Blender. Whatever a test does with it, Blender may print no traceback and report no error."""
+    session.new_log()
+    yield session
+    printed = session.new_log()
+    assert "Traceback" not in printed and "Error" not in printed, printed
+
+
+@pytest.fixture
+def afterlight(window, package):
+    """The extension is installed and enabled, by the window's Blender itself."""
+    if not window.value(f"{steps.MODULE!r} in bpy.context.preferences.addons"):
+        steps.install(window, package)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a person does with Afterlight in the window, and how the pictures are had and compared."""
+
+import numpy as np
+import OpenEXR
+
+ENABLED = "afterlight.enabled"
+MODULE = "bl_ext.user_default.afterlight"
+
+
+def install(window, package):
+    """Preferences > Get Extensions > Install from Disk."""
+    window.run(install_from_disk, package)
+    window.wait(f"{MODULE!r} in bpy.context.preferences.addons")
+
+
+def install_from_disk(path):
+    bpy.ops.extensions.package_install_files(filepath=path, repo="user_default", enable_on_install=True)
+    bpy.ops.wm.save_userpref()
+
+
+def new_box(window):
+    """A white box with a red wall, Afterlight not ticked, as if somebody had opened their file."""
+    window.run(make_box)
+    window.value("bpy.ops.ed.undo_push(message='Box') and None")
+
+
+def make_box():
+    import scenes
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    scenes.box(bpy.context.scene)
+    area("PROPERTIES")[1].spaces.active.context = "RENDER"
+
+
+def tick(window, on=True):
+    """Click on the box in the Render properties."""
+    window.point_at(ENABLED)
+    window.click()
+    window.wait(f"bpy.context.scene.afterlight.enabled == {on}")
+
+
+def save_as(path):
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
+def open_file(path):
+    bpy.ops.wm.open_mainfile(filepath=path)
+
+
+def result(window, name):
+    """(H, W, 3) of the last finished render, scene-linear."""
+    path = window.computer.folder / f"{name}.exr"
+    window.value(f"save_result({str(path)!r})")
+    return read_rgb(path)
+
+
+def headless(window, name, *arguments):
+    """(H, W, 3) of frame 1 of the file as it is now, rendered by `blender -b`."""
+    folder = window.computer.folder
+    window.run(save_as, folder / f"{name}.blend")
+    return render_file(window.computer, folder / f"{name}.blend", folder / f"{name}_headless", *arguments)
+
+
+def render_file(computer, blend, output, *arguments, frame=1):
+    computer.headless(blend, *arguments, "--python-expr", SETTINGS, "-o", f"{output}####", "-f", frame)
+    return read_rgb(output.with_name(f"{output.name}{frame:04}.exr"))
+
+
+SETTINGS = ("import bpy; s = bpy.context.scene.render.image_settings; s.media_type = 'IMAGE'; "
+            "s.file_format = 'OPEN_EXR'; s.color_depth = '32'; s.exr_codec = 'NONE'")
+
+
+def read_rgb(path):
+    channels = {name: channel.pixels for part in OpenEXR.File(str(path), separate_channels=True).parts
+                for name, channel in part.channels.items()}
+    return np.stack([channels[axis] for axis in "RGB"], axis=-1)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A person installs Afterlight, ticks the box and presses F12: the picture is the one that `blender -b` makes."""
+
+import numpy as np
+import pytest
+import steps
+
+
+def test_install_and_find_the_panel(window, afterlight):
+    steps.new_box(window)
+    window.point_at(steps.ENABLED)
+    window.picture("panel")
+
+
+def test_picture_is_that_of_the_command_line(window, afterlight):
+    """Bit for bit; and it is not that of EEVEE alone."""
+    steps.new_box(window)
+    window.render()
+    plain = steps.result(window, "plain")
+    steps.tick(window)
+    window.render()
+    window.picture("rendered")
+    lit = steps.result(window, "lit")
+    assert window.value("bpy.context.scene.afterlight.report") == ""
+    assert np.all(lit >= plain) and np.mean(lit) > 1.2 * np.mean(plain)
+    assert np.array_equal(lit, steps.headless(window, "lit"))
+
+
+def test_opengl_and_vulkan_agree(window, afterlight):
+    """Of the files that the test before has left: both backends are rendered by the command line there."""
+    files = [window.computer.folder.parent / backend / "lit_headless0001.exr" for backend in ("opengl", "vulkan")]
+    if not all(path.exists() for path in files):
+        pytest.skip("the other backend has rendered nothing yet")
+    opengl, vulkan = map(steps.read_rgb, files)
+    print(f"largest difference {np.max(np.abs(opengl - vulkan)):.3g}, mean {np.mean(np.abs(opengl - vulkan)):.3g}, "
+          f"of a picture of {np.mean(opengl):.3g}")
+    np.testing.assert_allclose(vulkan, opengl, rtol=1e-3, atol=1e-4)
+
+
+def test_undo_redo_save_reopen(window, afterlight):
+    steps.new_box(window)
+    steps.tick(window)
+    window.render()
+    lit = steps.result(window, "before_undo")
+    window.over("VIEW_3D")
+    window.key("ctrl+z")
+    window.wait("not bpy.context.scene.afterlight.enabled and len(bpy.data.scenes) == 1")
+    window.render()
+    assert np.mean(steps.result(window, "undone")) < np.mean(lit)
+    window.over("VIEW_3D")
+    window.key("ctrl+shift+z")
+    window.wait("bpy.context.scene.afterlight.enabled and len(bpy.data.scenes) == 2")
+    window.render()
+    assert np.array_equal(steps.result(window, "redone"), lit)
+    path = window.computer.folder / "saved.blend"
+    window.run(steps.save_as, path)
+    window.run(steps.open_file, path)
+    window.render()
+    assert np.array_equal(steps.result(window, "reopened"), lit)
