@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender sees of Afterlight, registered in the order in which the parts need one another."""
 
-from . import operators, panel, settings
+from . import help_page, migration, operators, panel, settings, translations
 from .pipeline import engine, handlers, relight
 
-PARTS = (settings, engine, relight, operators, panel, handlers)
+# migration before handlers: what follows a loaded file must find its settings in order.
+PARTS = (translations, help_page, settings, engine, relight, operators, panel, migration, handlers)
 
 
 def register():

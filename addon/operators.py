@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The buttons: what mends a scene, and presets."""
+"""The buttons: what mends a scene, presets, and settings from scene to scene."""
+
+import webbrowser
 
 import bpy
 from bl_operators.presets import AddPresetBase
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy.types import Operator
+from bpy_extras import anim_utils
 
+from . import help_page
 from .pipeline import wiring
+from .pipeline.cures import CURES
 from .settings import PARAMETERS
+from .translations import say
 
 
 class _OnEditableScene:
@@ -14,18 +21,42 @@ class _OnEditableScene:
 
     @classmethod
     def poll(cls, context):
-        return context.scene is not None and context.scene.library is None
+        if context.scene is None or context.scene.library is not None:
+            cls.poll_message_set(say("The scene is linked from another file and can't be changed here"))
+            return False
+        return True
+
+
+class AFTERLIGHT_OT_mend(_OnEditableScene, Operator):
+    bl_idname = "afterlight.mend"
+    bl_label = "Mend Scene for Indirect Light"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    cure: EnumProperty(name="Cure", description="What to change in the scene", options={"HIDDEN"},
+                       items=[(name, cure.button, cure.tooltip) for name, cure in CURES.items()])
+
+    @classmethod
+    def description(cls, _context, properties):
+        return say(CURES[properties.cure].tooltip)
+
+    def execute(self, context):
+        CURES[self.cure].apply(context)
+        return {"FINISHED"}
 
 
 class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
-    """Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor"""
-
     bl_idname = "afterlight.repair"
     bl_label = "Repair Indirect Light"
+    bl_description = "Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor"
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and context.scene.afterlight.enabled
+        if not super().poll(context):
+            return False
+        if not context.scene.afterlight.enabled:
+            cls.poll_message_set(say("Tick Indirect Light first"))
+            return False
+        return True
 
     def execute(self, context):
         wiring.connect(context.scene)
@@ -34,23 +65,70 @@ class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
         return {"FINISHED"}
 
 
-class AFTERLIGHT_OT_ray_tracing_off(_OnEditableScene, Operator):
-    """Turn off EEVEE's ray tracing, so that bounced light is counted once. Its reflections and refractions go too"""
+class AFTERLIGHT_OT_copy_settings(_OnEditableScene, Operator):
+    bl_idname = "afterlight.copy_settings"
+    bl_label = "Copy Indirect Light Settings"
+    bl_description = ("Give this scene's settings of Indirect Light to other scenes, as they are in this frame: keyframes "
+                      "and drivers stay here")
 
-    bl_idname = "afterlight.ray_tracing_off"
-    bl_label = "Turn Off Ray Tracing"
+    scene: StringProperty(name="Scene", description="The scene that gets the settings, all other scenes where empty")
+    enable: BoolProperty(name="Tick Too", description="Tick Indirect Light in those scenes as well")
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if not other_scenes(context.scene):
+            cls.poll_message_set(say("The file has no other scene that can be changed"))
+            return False
+        return True
 
     def execute(self, context):
-        context.scene.eevee.use_raytracing = False
+        others = [scene for scene in other_scenes(context.scene) if self.scene in ("", scene.name)]
+        if not others:
+            self.report({"ERROR"}, say('There is no other scene "{}" that can be changed', self.scene))
+            return {"CANCELLED"}
+        for scene in others:
+            for parameter in PARAMETERS:
+                setattr(scene.afterlight, parameter.name, getattr(context.scene.afterlight, parameter.name))
+            if self.enable and not scene.afterlight.enabled:
+                scene.afterlight.enabled = True
+            _warn_of_animation(self, scene)
+        self.report({"INFO"}, say("Settings copied to {}", ", ".join(scene.name for scene in others)))
+        return {"FINISHED"}
+
+
+class AFTERLIGHT_OT_reset(_OnEditableScene, Operator):
+    bl_idname = "afterlight.reset"
+    bl_label = "Reset Indirect Light Settings"
+    bl_description = "Set everything in this panel but its checkbox to the defaults. Keyframes and drivers stay"
+
+    def execute(self, context):
+        for parameter in PARAMETERS:
+            context.scene.afterlight.property_unset(parameter.name)
+        _warn_of_animation(self, context.scene)
+        return {"FINISHED"}
+
+
+class AFTERLIGHT_OT_help(Operator):
+    bl_idname = "afterlight.help"
+    bl_label = "Indirect Light Help"
+    bl_description = "Show the page of help that came with the extension in the web browser. It needs no network"
+
+    section: StringProperty(name="Section", description="Where to open the page", options={"HIDDEN", "SKIP_SAVE"})
+
+    def execute(self, _context):
+        webbrowser.open(help_page.address(self.section))
+        # Some browsers are shut out of the folder where extensions live, and say nothing that Python could hear.
+        self.report({"INFO"}, say("Help is in {}", help_page.PATH))
         return {"FINISHED"}
 
 
 class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
-    """Keep the settings of Indirect Light as a preset, or remove one"""
-
     bl_idname = "afterlight.preset_add"
     bl_label = "Add Indirect Light Preset"
-    preset_menu = "AFTERLIGHT_MT_presets"
+    bl_description = "Keep the settings of Indirect Light as a preset, or remove one"
+    preset_menu = "AFTERLIGHT_PT_presets"
     preset_subdir = "afterlight"
     preset_defines = ["settings = bpy.context.scene.afterlight"]
     # Strength and seed belong to the shot, not to the quality.
@@ -58,6 +136,32 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
                      if parameter.name in {"start", "samples", "radius"}]
 
 
-CLASSES = (AFTERLIGHT_OT_repair, AFTERLIGHT_OT_ray_tracing_off, AFTERLIGHT_OT_preset_add)
+def other_scenes(scene):
+    """The scenes of the file that settings can be copied to."""
+    return [other for other in bpy.data.scenes
+            if other != scene and other.library is None and not wiring.is_helper(other)]
+
+
+def _warn_of_animation(operator, scene):
+    animated = [parameter.label for parameter in PARAMETERS if parameter.name in _animated(scene)]
+    if animated:
+        operator.report({"WARNING"}, say('{} of "{}" has keyframes or a driver, which set it again in every frame',
+                                         ", ".join(map(say, animated)), scene.name))
+
+
+def _animated(scene):
+    """Names of the settings of `scene` that keyframes or drivers set."""
+    data = scene.animation_data
+    if data is None:
+        return set()
+    curves = list(data.drivers)
+    if data.action and (bag := anim_utils.action_get_channelbag_for_slot(data.action, data.action_slot)):
+        curves += bag.fcurves
+    return {curve.data_path.removeprefix("afterlight.") for curve in curves
+            if curve.data_path.startswith("afterlight.")}
+
+
+CLASSES = (AFTERLIGHT_OT_mend, AFTERLIGHT_OT_repair, AFTERLIGHT_OT_copy_settings, AFTERLIGHT_OT_reset,
+           AFTERLIGHT_OT_help, AFTERLIGHT_OT_preset_add)
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

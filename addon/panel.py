@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel under EEVEE's own in the Render properties."""
+"""The panel under EEVEE's own in the Render properties, and the menu that it shares with the top bar."""
 
 from pathlib import Path
 
+import blf
 import bpy
 from bl_ui.utils import PresetPanel
 from bpy.types import Menu, Panel
 
+from . import light, operators
 from .pipeline import checks, status, wiring
+from .pipeline.cures import CURES
+from .settings import light_settings
+from .translations import say
 
 FOLDER = str(Path(__file__).parent)
-
-
-class AFTERLIGHT_MT_presets(Menu):
-    bl_label = "Indirect Light Presets"
-    preset_subdir = "afterlight"
-    preset_operator = "script.execute_preset"
-    draw = Menu.draw_preset
 
 
 class AFTERLIGHT_PT_presets(PresetPanel, Panel):
@@ -24,6 +22,35 @@ class AFTERLIGHT_PT_presets(PresetPanel, Panel):
     preset_subdir = "afterlight"
     preset_operator = "script.execute_preset"
     preset_add_operator = "afterlight.preset_add"
+
+
+class AFTERLIGHT_MT_copy_settings(Menu):
+    bl_label = "Copy Settings"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator("afterlight.copy_settings", text="To All Scenes").scene = ""
+        layout.separator()
+        for scene in operators.other_scenes(context.scene):
+            layout.operator("afterlight.copy_settings", text=scene.name, translate=False).scene = scene.name
+
+
+class AFTERLIGHT_MT_indirect_light(Menu):
+    bl_label = "Indirect Light"
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.menu("AFTERLIGHT_MT_copy_settings")
+        layout.operator("afterlight.reset", text="Reset Settings")
+        layout.operator("afterlight.repair")
+        layout.separator()
+        layout.operator("afterlight.help", icon="QUESTION").section = ""
+
+
+def draw_in_top_bar(menu, _context):
+    """In the menu Render, where Blender's search (F3) finds what the menu holds: it looks through no panel."""
+    menu.layout.separator()
+    menu.layout.menu("AFTERLIGHT_MT_indirect_light")
 
 
 class _InRenderProperties:
@@ -43,10 +70,14 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context):
+        self.layout.active = not wiring.is_helper(context.scene)
         self.layout.prop(context.scene.afterlight, "enabled", text="")
 
     def draw_header_preset(self, _context):
-        AFTERLIGHT_PT_presets.draw_panel_header(self.layout)
+        layout = self.layout
+        AFTERLIGHT_PT_presets.draw_panel_header(layout)
+        layout.menu("AFTERLIGHT_MT_indirect_light", icon="DOWNARROW_HLT", text="")
+        layout.operator("afterlight.help", icon="QUESTION", text="").section = ""
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.afterlight
@@ -72,6 +103,7 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
         column.prop(settings, "samples")
         column.prop(settings, "radius")
         column = layout.column(align=True)
+        column.active = not light.is_exact(light_settings(settings, 0))
         column.prop(settings, "seed")
         column.prop(settings, "use_animated_seed")
 
@@ -86,35 +118,62 @@ class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
         return super().poll(context) and bool(context.scene.afterlight.report or status.stages(context.scene))
 
     def draw(self, context):
-        layout = self.layout
-        if context.scene.afterlight.report:
-            _draw_text(layout, context.scene.afterlight.report, "ERROR", context)
-        for stage, seconds in status.stages(context.scene).items():
-            row = layout.row()
-            row.label(text=stage.replace("_", " ").capitalize())
-            row.label(text=f"{seconds:.2f} s")
+        layout, scene = self.layout, context.scene
+        if scene.afterlight.report:
+            _draw_text(layout, scene.afterlight.report, "ERROR", context)
+        stages = status.stages(scene)
+        if stages:
+            column = layout.column(align=True)
+            for stage, seconds in stages.items():
+                _draw_row(column, say(status.in_words(stage)), f"{seconds:.3f} s")
+            column.separator()
+            _draw_row(column, say("Total"), f"{sum(stages.values()):.3f} s")
+        if memory := status.memory(scene):
+            column = layout.column(align=True)
+            for name, size in memory.items():
+                _draw_row(column, say(status.in_words(name)), f"{size / 2**20:.1f} MiB")
+
+
+def wrapped(text, fits):
+    """The lines of a text, which labels do not break by themselves. fits(line): whether a line is short enough."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".lstrip()
+        if fits(longer) or not lines[-1]:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def _draw_row(layout, name, value):
+    split = layout.split(factor=0.6)
+    split.label(text=name, translate=False)
+    right = split.row()
+    right.alignment = "RIGHT"
+    right.label(text=value, translate=False)
 
 
 def _draw_finding(layout, finding, context):
     box = layout.box()
     _draw_text(box, finding.text, "ERROR" if finding.fatal else "INFO", context)
-    if finding.operator:
-        box.operator(finding.operator, text=finding.button)
+    if finding.cure:
+        box.operator("afterlight.mend", text=CURES[finding.cure].button).cure = finding.cure
 
 
 def _draw_text(layout, text, icon, context):
-    """Labels do not wrap by themselves."""
-    width = max(20, int(context.region.width / context.preferences.system.ui_scale / 7))
-    column, line = layout.column(align=True), ""
-    for word in (*text.split(), None):
-        if word is None or len(line) + len(word) >= width:
-            column.label(text=line, icon=icon)
-            line, icon = "", "BLANK1"
-        line += f"{word} " if word else ""
+    scale = context.preferences.system.ui_scale
+    blf.size(0, context.preferences.ui_styles[0].widget.points * scale)
+    width = context.region.width - 80 * scale  # icon, margins of panel and box, scroll bar
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for line in wrapped(text, lambda line: blf.dimensions(0, line)[0] <= width):
+        column.label(text=line, icon=icon, translate=False)
+        icon = "BLANK1"
 
 
-CLASSES = (AFTERLIGHT_MT_presets, AFTERLIGHT_PT_presets, AFTERLIGHT_PT_indirect_light, AFTERLIGHT_PT_sampling,
-           AFTERLIGHT_PT_last_render)
+CLASSES = (AFTERLIGHT_PT_presets, AFTERLIGHT_MT_copy_settings, AFTERLIGHT_MT_indirect_light,
+           AFTERLIGHT_PT_indirect_light, AFTERLIGHT_PT_sampling, AFTERLIGHT_PT_last_render)
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(CLASSES)
 
@@ -122,8 +181,10 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(CLAS
 def register():
     _register_classes()
     bpy.utils.register_preset_path(FOLDER)
+    bpy.types.TOPBAR_MT_render.append(draw_in_top_bar)
 
 
 def unregister():
+    bpy.types.TOPBAR_MT_render.remove(draw_in_top_bar)
     bpy.utils.unregister_preset_path(FOLDER)
     _unregister_classes()

@@ -4,15 +4,20 @@
 from dataclasses import dataclass, field
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, IntVectorProperty, PointerProperty,
+                       StringProperty)
 
 from . import light
 from .pipeline import status, wiring
 
 
+VERSION = 0, 2, 0          # the manifest's; what older ones stored otherwise: migration.py
+
+
 @dataclass(frozen=True)
 class Parameter:
-    """One setting that a person can change. `options` go to Blender's property as they are."""
+    """One setting that a person can change. `options` go to Blender's property as they are. docs/help.html has a section
+    with the id `name`."""
 
     name: str
     kind: callable
@@ -49,15 +54,18 @@ PARAMETERS = (
     Parameter(
         "radius", IntProperty, "Radius",
         "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact "
-        "sum over all pixels, but the same samples are spread over more texels and the light gets noisier",
+        "sum over all pixels, but the same samples are spread over more texels and the light gets noisier. Hardly "
+        "changes the time",
         {"default": 16, "min": 2, "max": 64, "soft_min": 4, "soft_max": 32, "subtype": "PIXEL"}),
     Parameter(
         "seed", IntProperty, "Seed",
-        "Pattern of the random samples. The same seed gives the same picture, bit for bit",
+        "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without effect "
+        "where there are so many samples that there is no noise",
         {"default": 0, "min": 0, "max": 2**31 - 1}),
     Parameter(
         "use_animated_seed", BoolProperty, "Animate Seed",
-        "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves",
+        "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves. Costs "
+        "nothing",
         {"default": False}),
 )
 
@@ -65,13 +73,36 @@ PARAMETERS = (
 def light_settings(settings, frame):
     """The user's settings as the algorithm takes them. `frame` is the frame number, for an animated seed."""
     return light.Settings(
-        start=START[settings.start], samples=settings.samples, radius=settings.radius, strength=settings.strength,
+        start=START.get(settings.start, START["HALF"]),  # a newer version's file may hold others
+        samples=settings.samples, radius=settings.radius, strength=settings.strength,
         seed=settings.seed + frame * 7919 if settings.use_animated_seed else settings.seed)
+
+
+def is_stored(settings):
+    """Whether the file holds anything of Afterlight for this scene: nothing of scenes where nobody has touched it."""
+    return any(map(settings.is_property_set, ("enabled", *(parameter.name for parameter in PARAMETERS))))
+
+
+def store_all(settings, values=None):
+    """Write down the settings that still are at their defaults: with `values` by name where given, else as they are.
+
+    Blender stores only what was set; a default that another version changes would change the pictures of old files."""
+    for parameter in PARAMETERS:
+        if not settings.is_property_set(parameter.name):
+            setattr(settings, parameter.name, (values or {}).get(parameter.name, getattr(settings, parameter.name)))
+
+
+def stamp(settings):
+    """Make settings say that they are this version's, unless they are a newer one's."""
+    if tuple(settings.version) <= VERSION:
+        store_all(settings)
+        settings.version = VERSION
 
 
 def _switch(settings, _context):
     scene = settings.id_data
     if scene.library is None:
+        stamp(settings)
         (wiring.connect if settings.enabled else wiring.disconnect)(scene)
 
 
@@ -86,6 +117,9 @@ class AfterlightSettings(bpy.types.PropertyGroup):
         name="Last Render", get=lambda settings: status.message(settings.id_data),
         description="What kept the last render of this scene from being lit, empty where nothing did")
 
+    version: IntVectorProperty(
+        size=3, default=(0, 1, 0), options={"HIDDEN"},
+        description="The version of Afterlight that these settings are of. 0.1.0 stored none")
     helper: PointerProperty(
         type=bpy.types.Scene, options={"HIDDEN"},
         description="The scene through which Blender calls Afterlight while it renders this one")

@@ -154,7 +154,7 @@ def read_rgb(path):
 _VOLATILE = {"rna_type", "session_uid", "is_evaluated", "original", "depsgraph", "bl_rna", "is_updated",
              "is_updated_data", "preview", "id_properties_ui", "asset_data", "users", "dimensions", "tag",
              "active_section", "filepath", "report", "is_dirty", "runtime_data", "location_absolute", "has_data",
-             "is_runtime_data"}
+             "is_runtime_data", "version"}
 
 
 def written_down():

@@ -33,7 +33,7 @@ def wheels():
 
 def test_zip_holds_all_that_is_needed_and_nothing_else(names):
     sources = [path.relative_to(ROOT).as_posix() for path in (*SOURCES, *SHADERS)]
-    assert sorted(names) == sorted(["blender_manifest.toml", "LICENSE", *sources, *wheels()])
+    assert sorted(names) == sorted(["blender_manifest.toml", "LICENSE", "docs/help.html", *sources, *wheels()])
 
 
 def test_size(package, record_property):
@@ -204,7 +204,7 @@ def test_source_follows_the_rules_for_extensions(path):
     text = path.read_text()
     tree = ast.parse(text)
     allowed = (sys.stdlib_module_names - {"threading", "concurrent", "multiprocessing", "subprocess"}) | {
-        "bpy", "bpy_extras", "bl_operators", "bl_ui", "gpu", "gpu_extras", "mathutils", "idprop", "numpy", "OpenEXR"}
+        "blf", "bpy", "bpy_extras", "bl_operators", "bl_ui", "gpu", "gpu_extras", "mathutils", "idprop", "numpy", "OpenEXR"}
     wrong = [f"line {line}: import {name}" for level, name, line in imports(tree) if level == 0 and name not in allowed]
     wrong += [f"line {node.lineno}: sys.{node.attr}" for node in ast.walk(tree)
               if isinstance(node, ast.Attribute) and root_name(node) == "sys" and node.attr in ("path", "meta_path")]

@@ -7,7 +7,8 @@ docs/method.md.
 
 from .device import GpuUnavailable, release
 from .inputs import Camera, Passes, Settings
+from .memory import gpu_bytes, is_exact
 from .pipeline import (Cancelled, Pyramid, composite, gather, gather_indirect, merge, pack, upload, upsample)
 
 __all__ = ["Camera", "Cancelled", "GpuUnavailable", "Passes", "Pyramid", "Settings", "composite", "gather",
-           "gather_indirect", "merge", "pack", "release", "upload", "upsample"]
+           "gather_indirect", "gpu_bytes", "is_exact", "merge", "pack", "release", "upload", "upsample"]

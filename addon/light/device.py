@@ -22,7 +22,12 @@ STRIP = 64, 1
 
 
 class GpuUnavailable(RuntimeError):
-    """There is no GPU that can do this; the message says why and what to do."""
+    """There is no GPU that can do this; the message says why and what to do. args: the text and what goes into its braces,
+    apart, so that the text can be translated."""
+
+    def __str__(self):
+        text, *values = self.args
+        return text.format(*values)
 
 
 # The parameters of all passes, once for numpy and once for GLSL; std140 lays both out alike.
@@ -96,8 +101,8 @@ def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray |
     try:
         largest = gpu.capabilities.max_texture_size_get()
         if max(width, height) > largest:
-            raise GpuUnavailable(f"The frame needs a texture of {width} x {height}, but this GPU's largest is "
-                                 f"{largest} x {largest}. Lower the render resolution")
+            raise GpuUnavailable("The frame needs a texture of {} x {}, but this GPU's largest is {} x {}. Lower the "
+                                 "render resolution", width, height, largest, largest)
         buffer = None if data is None else gpu.types.Buffer("FLOAT", data.size, data.ravel())
         return gpu.types.GPUTexture((width, height), format=format, data=buffer)
     except SystemError as error:
@@ -106,8 +111,8 @@ def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray |
     except (RuntimeError, MemoryError) as error:
         if isinstance(error, GpuUnavailable):
             raise
-        raise GpuUnavailable(f"The GPU has no memory for a texture of {width} x {height}. Use a coarser start "
-                             "resolution, or lower the render resolution") from error
+        raise GpuUnavailable("The GPU has no memory for a texture of {} x {}. Use a coarser start resolution, or lower "
+                             "the render resolution", width, height) from error
 
 
 @cache
@@ -131,8 +136,8 @@ def shader(name: str) -> gpu.types.GPUShader:
     try:
         return gpu.shader.create_from_info(info)
     except Exception as error:  # Blender raises a bare Exception here
-        raise GpuUnavailable(f"The GPU driver cannot compile the shader '{name}'. Update the graphics driver, or "
-                             "try Blender's other GPU backend in the preferences") from error
+        raise GpuUnavailable("The GPU driver cannot compile the shader '{}'. Update the graphics driver, or try "
+                             "Blender's other GPU backend in the preferences", name) from error
 
 
 def release() -> None:

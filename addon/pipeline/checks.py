@@ -3,68 +3,42 @@
 
 from dataclasses import dataclass
 
-import bpy
-
-from . import relight, wiring
+from .. import settings
+from ..translations import say
+from . import cures, relight, wiring
 
 
 @dataclass(frozen=True)
 class Finding:
-    """text: what is wrong and what to do. fatal: the render goes on without our light. operator, button: what mends
-    it at a click; empty where only the user can."""
+    """text: what is wrong and what to do. fatal: the render goes on without our light. cure: what mends it at a click,
+    by its name in cures.py; empty where only the user can."""
 
     text: str
+    cure: str = ""
     fatal: bool = True
-    operator: str = ""
-    button: str = ""
 
 
 def findings(scene):
     """Everything wrong with `scene`, what matters most first. Reads the scene, changes nothing."""
-    render, camera = scene.render, scene.camera
-    found = []
     if wiring.is_helper(scene):
         lit = wiring.source(scene)
-        return [Finding(f'This scene only serves to light "{lit.name if lit else "another"}". Render that one')]
-    if render.engine != "BLENDER_EEVEE" and not relight.is_replayed(scene):
-        engine = render.engine.removeprefix("BLENDER_").title()
-        found.append(Finding(f"Indirect Light works on EEVEE's passes, and the render engine is {engine}. Set Render "
-                             "Engine to EEVEE, or untick Indirect Light"))
-    if camera is None:
-        found.append(Finding("The scene has no camera. Add one (Add > Camera) and make it the scene's camera"))
-    elif camera.type != "CAMERA":
-        found.append(Finding(f'The scene looks through "{camera.name}", which is no camera. Choose a camera in the '
-                             "Scene properties"))
-    elif camera.data.type not in {"PERSP", "ORTHO"}:
-        found.append(Finding(f'The camera "{camera.name}" is panoramic. Set its Lens Type to Perspective or '
-                             "Orthographic"))
-    if not any(layer.use for layer in scene.view_layers):
-        found.append(Finding("No view layer is rendered. Tick Use for Rendering in the View Layer properties"))
-    if render.use_multiview:
-        found.append(Finding("Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output "
-                             "properties"))
-    if render.use_single_layer:
-        found.append(Finding("Render Single Layer is on, and with it Blender leaves out the scene that gathers the "
-                             "light. Untick it in the View Layer properties"))
-    if render.use_sequencer and scene.sequence_editor and len(scene.sequence_editor.strips):
-        found.append(Finding("The Video Sequencer's strips are rendered instead of the scene. Untick Sequencer in "
-                             "Output properties > Post Processing, or render the scene without strips"))
+        if lit is None:
+            return [Finding(say("This scene served to light another, which is gone"))]
+        return [Finding(say('This scene only serves to light "{}". Render that one', lit.name), "SHOW_LIT")]
+    found = [*_of_engine(scene), *_of_camera(scene), *_of_layers(scene)]
     if counts_twice(scene):
-        found.append(Finding("EEVEE's ray tracing already adds bounced light: ours would count it twice",
-                             operator="afterlight.ray_tracing_off", button="Turn Off Ray Tracing"))
+        found.append(Finding(say("EEVEE's ray tracing already adds bounced light: ours would count it twice"),
+                             "RAY_TRACING"))
     if scene.afterlight.enabled:
-        found += [Finding(text, operator="afterlight.repair", button="Repair") for text in wiring.faults(scene)]
-    if _shows_probe_volume(scene):
-        found.append(Finding("Light probe volumes hold bounced light once they are baked, and ours comes on top. "
-                             "Disable them in renders, or free their bakes", fatal=False))
+        found += [Finding(text, cure) for text, cure in wiring.faults(scene).items()]
+    if cures.probe_volumes(scene):
+        found.append(Finding(say("Light probe volumes hold bounced light once they are baked, and ours comes on top. "
+                                 "Disable them in renders, or free their bakes"), "PROBES", fatal=False))
+    if tuple(scene.afterlight.version) > settings.VERSION:
+        found.append(Finding(say("These settings were saved by Afterlight {}, and this is {}. What this version does not know "
+                                 "is kept in the file, but has no effect", _dotted(scene.afterlight.version),
+                                 _dotted(settings.VERSION)), fatal=False))
     return found
-
-
-def _shows_probe_volume(scene):
-    """The file's few light probes are asked first: scenes have many objects, and the panel asks at every redraw."""
-    return any(probe.type == "VOLUME" for probe in bpy.data.lightprobes) and any(
-        thing.type == "LIGHT_PROBE" and thing.data.type == "VOLUME" and not thing.hide_render
-        for thing in scene.objects)
 
 
 def counts_twice(scene):
@@ -72,3 +46,43 @@ def counts_twice(scene):
     difference to that (docs/blender.md)."""
     eevee = scene.eevee
     return scene.render.engine == "BLENDER_EEVEE" and eevee.use_raytracing and eevee.indirect_light_intensity > 0
+
+
+def _of_engine(scene):
+    if scene.render.engine != "BLENDER_EEVEE" and not relight.is_replayed(scene):
+        engine = scene.render.engine.removeprefix("BLENDER_").title()
+        yield Finding(say("Indirect Light works on EEVEE's passes, and the render engine is {}. Set Render Engine to EEVEE, "
+                          "or untick Indirect Light", engine), "ENGINE")
+
+
+def _of_camera(scene):
+    camera, spare = scene.camera, "CAMERA" if cures.spare_camera(scene) else ""
+    if camera is None:
+        yield Finding(say("The scene has no camera. Choose one in the Scene properties") if spare else
+                      say("The scene has no camera. Add one (Add > Camera) and make it the scene's camera"), spare)
+    elif camera.type != "CAMERA":
+        yield Finding(say('The scene looks through "{}", which is no camera. Choose a camera in the Scene properties',
+                          camera.name), spare)
+    elif camera.data.type not in {"PERSP", "ORTHO"}:
+        yield Finding(say('The camera "{}" is panoramic. Set its Lens Type to Perspective or Orthographic', camera.name),
+                      "LENS" if camera.data.is_editable else "")
+
+
+def _of_layers(scene):
+    """What keeps Blender from rendering the scene as one picture through all its view layers."""
+    render = scene.render
+    if not any(layer.use for layer in scene.view_layers):
+        yield Finding(say("No view layer is rendered. Tick Use for Rendering in the View Layer properties"), "VIEW_LAYER")
+    if render.use_multiview:
+        yield Finding(say("Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output properties"),
+                      "STEREO")
+    if render.use_single_layer:
+        yield Finding(say("Render Single Layer is on, and with it Blender leaves out the scene that gathers the light. "
+                          "Untick it in the View Layer properties"), "SINGLE_LAYER")
+    if render.use_sequencer and scene.sequence_editor and len(scene.sequence_editor.strips):
+        yield Finding(say("The Video Sequencer's strips are rendered instead of the scene. Untick Sequencer in Output "
+                          "properties > Post Processing, or render the scene without strips"), "SEQUENCER")
+
+
+def _dotted(version):
+    return ".".join(map(str, version))

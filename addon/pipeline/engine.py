@@ -7,6 +7,7 @@ loads those of the view layer at hand, gathers (light/pipeline.py) and hands the
 a frame is lit again (relight.py), the scene itself has this engine for a moment and hands EEVEE's passes back.
 """
 
+import os
 import time
 import traceback
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ import bpy
 import numpy as np
 
 from .. import light, settings
+from ..translations import say
 from . import checks, passes, relight, status, wiring
 from .nodes import PASS
 from .status import Problem
@@ -33,6 +35,7 @@ class Shot:
     settings: light.Settings = None
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
+    memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
 
     def spent(self, stage, seconds):
         self.seconds[stage] = self.seconds.get(stage, 0.0) + seconds
@@ -61,8 +64,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
             return
         source = wiring.source(depsgraph.scene)
         if source is None:
-            self._fail(depsgraph.scene, "This engine works for Afterlight's helper scenes only. Set Render Engine to "
-                                        "EEVEE and tick Indirect Light")
+            self._fail(depsgraph.scene, say("This engine works for Afterlight's helper scenes only. Set Render Engine to "
+                                            "EEVEE and tick Indirect Light"))
             return
         again = relight.kept(source) if relight.is_replayed(source) else None
         self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0], again)
@@ -84,20 +87,21 @@ class AfterlightEngine(bpy.types.RenderEngine):
         picture = None
         try:
             if shot.problem:
-                raise Problem(shot.problem)
+                raise Problem("{}", shot.problem)
             picture = self._gather(shot)
         except light.Cancelled:
             pass
         except (Problem, light.GpuUnavailable) as problem:
-            self._fail(shot.scene, str(problem))
+            self._fail(shot.scene, say(*problem.args))
         except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
             traceback.print_exc()
-            self._fail(shot.scene, f"Afterlight met an error of its own ({error}). The terminal has the details; please "
-                             "report them")
+            self._fail(shot.scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
+                                       "report them", error))
         start = time.perf_counter()
         self._hand_back(shot, picture)
         shot.spent("hand back", time.perf_counter() - start)
         status.timed(shot.scene, shot.seconds)
+        status.took(shot.scene, shot.memory)
 
     def _fail(self, scene, text):
         if status.fail(scene, text):
@@ -136,22 +140,24 @@ class AfterlightEngine(bpy.types.RenderEngine):
             self.file = passes.save(shot.scene)
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
-        frame = passes.load(shot.again.path if shot.again else self.file, shot.layer, shot.window)
+        path = shot.again.path if shot.again else self.file
+        frame = passes.load(path, shot.layer, shot.window)
+        shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings), "passes file": os.path.getsize(path)}
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
         picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed,
                                         broken=broken)
         for name, count in broken.items():
-            self.report({"WARNING"}, f"Afterlight: {count} pixels of {name.replace('_', ' ')} in {shot.layer} are NaN "
-                                     "or infinite. They send no indirect light; look for a material that divides by "
-                                     "zero or a light of unbounded strength")
+            self.report({"WARNING"}, say(
+                "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a material "
+                "that divides by zero or a light of unbounded strength", count, name.replace("_", " "), shot.layer))
         for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
             shot.spent(stage, seconds)
         return picture
 
     def _progress(self, stage, fraction):
-        self.update_stats("Afterlight", f"{stage.replace('_', ' ').capitalize()}, {fraction:.0%}")
+        self.update_stats("Afterlight", f"{say(status.in_words(stage))}, {fraction:.0%}")
         self.update_progress(fraction)
         return self.test_break()
 

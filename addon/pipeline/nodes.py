@@ -108,6 +108,14 @@ def light_node(tree, helper, layer):
     return light
 
 
+def picture_node(tree, scene):
+    """A Render Layers node that shows `scene`: the first view layer that is rendered."""
+    picture = tree.nodes.new("CompositorNodeRLayers")
+    picture.scene = scene
+    picture.layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0]).name
+    return picture
+
+
 def retarget(tree, scene, old, helper):
     """Make our light nodes show `helper` instead of `old`, and the view layer that the picture beside them shows."""
     for node in tree.nodes:

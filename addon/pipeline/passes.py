@@ -29,19 +29,17 @@ def save(scene):
     """
     path = file_path(scene)
     leftovers.claim(bpy.app.tempdir)
-    cure = ("Free some space there, or choose another folder in Preferences > File Paths > Temporary Files "
-            "and restart Blender")
     try:
         with _multilayer_exr(scene.render.image_settings):
             render_result().save_render(path, scene=scene)
     except (RuntimeError, OSError) as error:
         discard(path)
         if "does not have any image data" in str(error):
-            raise Problem(f'There is no render of "{scene.name}" to light. Render that one, not the scene that serves '
-                          "to light it") from error
-        raise Problem(f"The passes could not be written to {bpy.app.tempdir} ({_text(error)}). {cure}") from error
+            raise Problem('There is no render of "{}" to light. Render that one, not the scene that serves to light it',
+                          scene.name) from error
+        raise _not_written(_text(error)) from error
     if not os.path.exists(path):
-        raise Problem(f"The passes could not be written to {bpy.app.tempdir}. {cure}")
+        raise _not_written("there is no file")
     return path
 
 
@@ -67,8 +65,8 @@ def load(path, layer, window):
     try:
         found = {field: tuple(cut(f"{layer}.{name}.{axis}") for axis in axes) for field, _, name, axes in PASSES}
     except KeyError as error:
-        raise Problem(f"The render has no pass {_text(error)}. Press Repair in the Indirect Light panel, "
-                      "then render again") from error
+        raise Problem("The render has no pass {}. Press Repair in the Indirect Light panel, then render again",
+                      _text(error)) from error
     found["depth"], = found["depth"]
     return light.Passes(**found)
 
@@ -106,8 +104,8 @@ def _channels(path):
     try:
         import OpenEXR
     except ImportError as error:
-        raise Problem(f"The OpenEXR module can't be imported ({_text(error)}). It comes with the extension: remove "
-                      "Afterlight in Preferences > Get Extensions and install it again from its zip") from error
+        raise Problem("The OpenEXR module can't be imported ({}). It comes with the extension: remove Afterlight in "
+                      "Preferences > Get Extensions and install it again from its zip", _text(error)) from error
     try:
         channels = _mapped(path, OpenEXR.File(path, separate_channels=True, header_only=True).header())
         if channels is None:
@@ -117,8 +115,8 @@ def _channels(path):
             raise EOFError("it holds no whole pass")
         return channels
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
-        raise Problem(f"The passes could not be read back from {path} ({_text(error)}). "
-                      "The disk of the temporary folder may be full") from error
+        raise Problem("The passes could not be read back from {} ({}). The disk of the temporary folder may be full",
+                      path, _text(error)) from error
 
 
 def discard(path):
@@ -206,6 +204,11 @@ def _multilayer_exr(image_settings):
         # What the media type and the format allow depends on those before them.
         for name in ("media_type", "file_format", *saved):
             setattr(image_settings, name, saved[name])
+
+
+def _not_written(why):
+    return Problem("The passes could not be written to {} ({}). Free some space there, or choose another folder in "
+                   "Preferences > File Paths > Temporary Files and restart Blender", bpy.app.tempdir, why)
 
 
 def _text(error):

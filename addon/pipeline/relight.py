@@ -13,6 +13,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from .. import light
+from ..translations import say
 from . import passes, wiring
 from .status import Problem
 from .wiring import ENGINE
@@ -79,13 +80,13 @@ def obstacle(scene):
     """Why the light of `scene` can't be gathered again, as a sentence for people; empty where it can."""
     found = kept(scene)
     if found is None:
-        return "There is no render of this scene to light again. Press F12 first"
+        return say("There is no render of this scene to light again. Press F12 first")
     if not os.path.exists(found.path) or os.path.getsize(found.path) != found.size:
-        return "The kept passes were deleted from the temporary folder. Press F12"
+        return say("The kept passes were deleted from the temporary folder. Press F12")
     if (found.window, found.full) != passes.window(scene):
-        return "The resolution or the render region has changed since the last render. Press F12"
+        return say("The resolution or the render region has changed since the last render. Press F12")
     if any(layer.use and layer.name not in found.layers for layer in scene.view_layers):
-        return "View layers were added or renamed since the last render. Press F12"
+        return say("View layers were added or renamed since the last render. Press F12")
     return ""
 
 
@@ -145,9 +146,9 @@ class AFTERLIGHT_OT_update(bpy.types.Operator):
     def poll(cls, context):
         scene = context.scene
         if not scene.afterlight.enabled:
-            cls.poll_message_set("Tick Indirect Light first")
+            cls.poll_message_set(say("Tick Indirect Light first"))
         elif bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set("A render is going on")
+            cls.poll_message_set(say("A render is going on"))
         elif problem := obstacle(scene):
             cls.poll_message_set(problem)
         else:

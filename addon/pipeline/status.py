@@ -9,14 +9,22 @@ import sys
 
 import bpy
 
+from ..translations import say
+
 _messages = {}
 _stages = {}
+_memory = {}
 _failed = False
 wants_stages = False  # a benchmark sets it: the GPU is then waited for after each stage
 
 
 class Problem(Exception):
-    """Something in the user's scene or machine keeps the light out. Its text says what, and what to do."""
+    """Something in the user's scene or machine keeps the light out. Its text says what, and what to do. args: as
+    light.GpuUnavailable has them."""
+
+    def __str__(self):
+        text, *values = self.args
+        return text.format(*values)
 
 
 def begin(scene):
@@ -51,10 +59,26 @@ def stages(scene):
     return _stages.get(scene.session_uid, {})
 
 
+def in_words(name):
+    """The name of a stage or of what memory is for, as a label has it."""
+    return name[:1].upper() + name[1:].replace("_", " ")
+
+
+def took(scene, memory):
+    """Keep the bytes that the last render took at most, by the name of what they are."""
+    _memory[scene.session_uid] = memory
+
+
+def memory(scene):
+    """Bytes by name of the last render of `scene`; empty where there was none."""
+    return _memory.get(scene.session_uid, {})
+
+
 def _pop_up(text):
     def draw(menu, _context):
-        menu.layout.label(text=text)
-    bpy.context.window_manager.popup_menu(draw, title="Afterlight: the picture has no indirect light", icon="ERROR")
+        menu.layout.label(text=text, translate=False)
+    bpy.context.window_manager.popup_menu(
+        draw, title=say("Afterlight: the picture has no indirect light"), icon="ERROR")
 
 
 def _exit_code():
@@ -88,3 +112,4 @@ def unregister():
         atexit.unregister(_exit_code)
     _messages.clear()
     _stages.clear()
+    _memory.clear()

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..translations import say
 from . import nodes
 from .nodes import MARK
 from .passes import PASSES
@@ -87,37 +88,45 @@ def clean_up():
 
 
 def faults(scene):
-    """What is missing from the wiring of an enabled scene, as sentences for people; empty where all is in place."""
+    """What is missing from the wiring of an enabled scene, as {sentence for people: what mends it in cures.py, or ""};
+    empty where all is in place."""
     helper, tree = scene.afterlight.helper, scene.compositing_node_group
     if helper is None or source(helper) != scene or helper.render.engine != ENGINE:
-        return ["Afterlight's helper scene was deleted or changed"]
+        return {say("Afterlight's helper scene was deleted or changed"): "REPAIR"}
     if tree is None or not scene.render.use_compositing:
-        return ["Compositing is switched off, so the light can't be added to the picture"]
+        return {say("Compositing is switched off, so the light can't be added to the picture"): "REPAIR"}
     if [layer.name for layer in helper.view_layers] != [layer.name for layer in scene.view_layers]:
-        return ["View layers were added, removed or renamed since Indirect Light was ticked"]
+        return {say("View layers were added, removed or renamed since Indirect Light was ticked"): "REPAIR"}
     pictures = nodes.pictures(tree, scene)
     if not pictures:
-        return [f'The compositor has no Render Layers node of "{scene.name}", so there is no picture to add light to']
+        return {say('The compositor has no Render Layers node of "{}", so there is no picture to add light to. Add one and '
+                    "link its Image", scene.name): ""}
     if not any(picture.id_data == tree for picture in pictures):
-        return ["All Render Layers nodes of this scene are inside node groups, and then Blender does not render the "
-                "scene. Add one at the top level of the compositor; it need not be linked"]
-    found = []
+        return {say("All Render Layers nodes of this scene are inside node groups, and then Blender does not render the "
+                    "scene. Add one at the top level of the compositor; it need not be linked"): "RENDER_LAYERS"}
+    found = {}
     lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, scene, helper)]
     if lost:
-        found.append(f"The node that adds the light to {', '.join(lost)} was deleted, and the links of the image with "
-                     "it. Link the Image of its Render Layers node again, then press Repair")
+        found[say("The node that adds the light to {} was deleted, and the links of the image with it. Link the Image of "
+                  "its Render Layers node again", ", ".join(lost))] = "REPAIR" if tree == scene.afterlight.own_tree else ""
     dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
     if dark:
-        found.append(f"The compositor uses {', '.join(dark)} without the indirect light: a node of Afterlight was "
-                     "deleted, or a Render Layers node is new")
+        found[say("The compositor uses {} without the indirect light: a node of Afterlight was deleted, or a Render "
+                  "Layers node is new", ", ".join(dark))] = "REPAIR"
     if not any(nodes.shows(node, helper) for node in tree.nodes):
-        found.append("Afterlight's Render Layers node was deleted from the compositor")
+        found[say("Afterlight's Render Layers node was deleted from the compositor")] = "REPAIR"
     elif any(nodes.role(node) == "add" and not nodes.source(node, nodes.B) for node in nodes.all_nodes(tree)):
-        found.append("The indirect light is no longer linked to the node that adds it")
+        found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in PASSES)
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
-        found.append("A pass that Afterlight reads was switched off")
+        found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
     return found
+
+
+def add_picture(scene):
+    """Add a Render Layers node of `scene` to the top level of its compositor, the user's own from then on."""
+    nodes.picture_node(scene.compositing_node_group, scene).location = (-400, 0)
+    connect(scene)
 
 
 def _own_helper(scene):
@@ -189,10 +198,8 @@ def _new_tree(scene):
     """The tree that does what Blender does without one: the first view layer's image is the picture."""
     tree = bpy.data.node_groups.new(TREE_NAME, "CompositorNodeTree")
     tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    picture, output = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("NodeGroupOutput")
+    picture, output = nodes.picture_node(tree, scene), tree.nodes.new("NodeGroupOutput")
     picture[MARK] = output[MARK] = "plain"
-    picture.scene = scene
-    picture.layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0]).name
     output.location = (600, 0)
     _link_image(tree)
     return tree

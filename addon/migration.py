@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of earlier versions: their settings become this version's, and mean what they meant, as soon as a file is opened.
+
+Settings of a newer version are left as they are; checks.py says so.
+"""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import settings
+
+DEFAULTS_OF_0_1_0 = {
+    "strength": 1.0, "start": "HALF", "samples": 256, "radius": 16, "seed": 0, "use_animated_seed": False}
+
+
+def _store_defaults(old):
+    """0.1.0 stored only what differed from its defaults. Since then a file holds every setting."""
+    settings.store_all(old, DEFAULTS_OF_0_1_0)
+
+
+# The version that changed something, and what brings older settings up to it. A setting that gets a new name takes its
+# keyframes and drivers along.
+STEPS = (((0, 2, 0), _store_defaults),)
+
+
+def migrate(old):
+    """Bring one scene's settings up to this version."""
+    if not settings.is_stored(old):
+        return
+    for version, step in STEPS:
+        if tuple(old.version) < version:
+            step(old)
+    settings.stamp(old)
+
+
+@persistent
+def migrate_all(*_):
+    """A file was opened, or scenes came in from one."""
+    for scene in bpy.data.scenes:
+        if scene.library is None:
+            migrate(scene.afterlight)
+
+
+@persistent
+def stamp_all(*_):
+    """The file is about to be saved, or to take scenes in: settings that were only just made get their version."""
+    for scene in bpy.data.scenes:
+        if scene.library is None and settings.is_stored(scene.afterlight):
+            settings.stamp(scene.afterlight)
+
+
+def _once():
+    """For a file that was open before the extension was switched on."""
+    migrate_all()
+
+
+HANDLERS = (("load_post", migrate_all), ("save_pre", stamp_all),
+            # What is in the file already must not pass for what comes in.
+            ("blend_import_pre", stamp_all), ("blend_import_post", migrate_all))
+
+
+def register():
+    for event, handler in HANDLERS:
+        getattr(bpy.app.handlers, event).append(handler)
+    bpy.app.timers.register(_once, first_interval=0.0)
+
+
+def unregister():
+    for event, handler in HANDLERS:
+        if handler in getattr(bpy.app.handlers, event):
+            getattr(bpy.app.handlers, event).remove(handler)
+    if bpy.app.timers.is_registered(_once):
+        bpy.app.timers.unregister(_once)

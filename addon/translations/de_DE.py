@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""German."""
+
+TEXTS = {
+    # Settings
+    "Indirect Light": "Indirektes Licht",
+    "Add one bounce of indirect light to EEVEE's renders, gathered from the passes of the finished frame. To fade it "
+    "in an animation, put keyframes on Strength":
+        "EEVEEs Bildern indirektes Licht nach einer Reflexion hinzufügen, gesammelt aus den Passes des fertigen "
+        "Bildes. Zum Ein- und Ausblenden in einer Animation Keyframes auf die Stärke setzen",
+    "Last Render": "Letztes Rendern",
+    "What kept the last render of this scene from being lit, empty where nothing did":
+        "Was das letzte Rendern dieser Szene ohne Licht ließ, sonst leer",
+    "Strength": "Stärke",
+    "Scales the indirect light in the picture. 1 is what the light really does; it is a factor on linear light, so "
+    "exposure and view transform do not change its meaning. Costs nothing":
+        "Faktor auf das indirekte Licht im Bild. 1 entspricht dem wirklichen Licht; er gilt für lineares Licht, "
+        "Belichtung und Ansichtstransformation ändern also nichts an seiner Bedeutung. Kostet keine Zeit",
+    "Start Resolution": "Startauflösung",
+    "Finest resolution at which light is gathered. Each step up costs four times as much and sharpens the light near "
+    "edges and contacts; it does not change how bright the light is":
+        "Feinste Auflösung, in der Licht gesammelt wird. Jede Stufe kostet das Vierfache und schärft das Licht an "
+        "Kanten und Berührungsstellen; die Helligkeit ändert sich nicht",
+    "Quarter": "Viertel",
+    "One texel for 4 x 4 pixels: the fastest, softest near contacts":
+        "Ein Texel für 4 x 4 Pixel: am schnellsten, am weichsten an Berührungsstellen",
+    "Half": "Halb",
+    "One texel for 2 x 2 pixels: four times the cost of Quarter":
+        "Ein Texel für 2 x 2 Pixel: viermal so teuer wie Viertel",
+    "Full": "Voll",
+    "One texel a pixel: sixteen times the cost of Quarter": "Ein Texel je Pixel: sechzehnmal so teuer wie Viertel",
+    "Samples": "Samples",
+    "Random samples a texel takes at the finest level, twice as many at each coarser one, where noise shows most. "
+    "Time grows in proportion, noise falls with the square root. Where the radius holds fewer texels than that, each "
+    "is visited once and there is no noise at all":
+        "Zufällige Samples je Texel auf der feinsten Ebene, doppelt so viele auf jeder gröberen, wo Rauschen am "
+        "meisten auffällt. Die Zeit wächst im gleichen Verhältnis, das Rauschen sinkt mit der Wurzel. Umfasst der "
+        "Radius weniger Texel, so wird jedes einmal besucht, und es rauscht gar nicht",
+    "Radius": "Radius",
+    "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact sum "
+    "over all pixels, but the same samples are spread over more texels and the light gets noisier. Hardly changes the "
+    "time":
+        "Radius der Scheibe, die auf jeder Ebene abgetastet wird, in Texeln dieser Ebene. Größer kommt der genauen "
+        "Summe über alle Pixel näher, doch dieselben Samples verteilen sich auf mehr Texel, und das Licht rauscht "
+        "stärker. Ändert die Zeit kaum",
+    "Seed": "Startwert",
+    "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without effect "
+    "where there are so many samples that there is no noise":
+        "Muster der zufälligen Samples. Derselbe Startwert ergibt dasselbe Bild, Bit für Bit. Kostet keine Zeit. Ohne "
+        "Wirkung, wo es bei so vielen Samples nicht rauscht",
+    "Animate Seed": "Startwert animieren",
+    "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves. Costs "
+    "nothing":
+        "In jedem Frame ein anderes Muster nehmen, damit das Rauschen bei bewegter Kamera nicht am Bild klebt. Kostet "
+        "keine Zeit",
+
+    # Panel and menu
+    "Indirect Light Presets": "Vorgaben für indirektes Licht",
+    "Sampling": "Sampling",
+    "Total": "Gesamt",
+    "Write passes": "Passes schreiben",
+    "Saving passes": "Passes werden gespeichert",
+    "Read passes": "Passes lesen",
+    "Gather on the GPU": "Sammeln auf der GPU",
+    "Upload": "Hochladen",
+    "Pyramid": "Pyramide",
+    "Gather": "Sammeln",
+    "Upsample": "Hochrechnen",
+    "Read back": "Zurücklesen",
+    "Hand back": "Übergeben",
+    "GPU memory": "GPU-Speicher",
+    "Passes file": "Datei der Passes",
+    "Copy Settings": "Einstellungen kopieren",
+    "To All Scenes": "In alle Szenen",
+    "Reset Settings": "Einstellungen zurücksetzen",
+
+    # Operators
+    "Mend Scene for Indirect Light": "Szene für indirektes Licht richten",
+    "Repair Indirect Light": "Indirektes Licht reparieren",
+    "Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor":
+        "Wiederherstellen, was indirektes Licht braucht: die Hilfsszene, die Passes und die Nodes im Compositor",
+    "Copy Indirect Light Settings": "Einstellungen des indirekten Lichts kopieren",
+    "Give this scene's settings of Indirect Light to other scenes, as they are in this frame: keyframes and drivers "
+    "stay here":
+        "Anderen Szenen die Einstellungen des indirekten Lichts dieser Szene geben, wie sie in diesem Frame sind: "
+        "Keyframes und Treiber bleiben hier",
+    "Scene": "Szene",
+    "The scene that gets the settings, all other scenes where empty":
+        "Die Szene, die die Einstellungen bekommt; alle anderen, wo leer",
+    "Tick Too": "Auch einschalten",
+    "Tick Indirect Light in those scenes as well": "Indirektes Licht in diesen Szenen auch einschalten",
+    "Settings copied to {}": "Einstellungen kopiert nach {}",
+    'There is no other scene "{}" that can be changed': 'Es gibt keine andere Szene "{}", die sich ändern lässt',
+    "The file has no other scene that can be changed": "Die Datei hat keine andere Szene, die sich ändern lässt",
+    "The scene is linked from another file and can't be changed here":
+        "Die Szene ist aus einer anderen Datei verknüpft und lässt sich hier nicht ändern",
+    "Reset Indirect Light Settings": "Einstellungen des indirekten Lichts zurücksetzen",
+    "Set everything in this panel but its checkbox to the defaults. Keyframes and drivers stay":
+        "Alles in diesem Panel außer seinem Häkchen auf die Standardwerte setzen. Keyframes und Treiber bleiben",
+    '{} of "{}" has keyframes or a driver, which set it again in every frame':
+        '{} von "{}" hat Keyframes oder einen Treiber, die es in jedem Frame neu setzen',
+    "Indirect Light Help": "Hilfe zum indirekten Licht",
+    "Show the page of help that came with the extension in the web browser. It needs no network":
+        "Die mitgelieferte Hilfeseite im Webbrowser zeigen (englisch). Sie braucht kein Netz",
+    "Help is in {}": "Die Hilfe liegt in {}",
+    "Add Indirect Light Preset": "Vorgabe für indirektes Licht hinzufügen",
+    "Keep the settings of Indirect Light as a preset, or remove one":
+        "Die Einstellungen des indirekten Lichts als Vorgabe behalten oder eine entfernen",
+    "Update Indirect Light": "Indirektes Licht aktualisieren",
+    "Gather the light of the last render again with the settings as they are now, and composite the picture. EEVEE "
+    "does not render again, so what changed in the scene since does not show":
+        "Das Licht des letzten Renderns mit den jetzigen Einstellungen neu sammeln und das Bild zusammensetzen. EEVEE "
+        "rendert nicht noch einmal; was sich seither in der Szene geändert hat, zeigt sich nicht",
+    "Free Kept Passes": "Behaltene Passes freigeben",
+    "Remove the passes of the last render from the temporary folder, where they are kept until Blender ends. Updating "
+    "the light then needs another render":
+        "Die Passes des letzten Renderns aus dem Ordner für temporäre Dateien entfernen, wo sie bis zum Ende von "
+        "Blender bleiben. Das Licht zu aktualisieren braucht dann ein neues Rendern",
+    "Tick Indirect Light first": "Zuerst indirektes Licht einschalten",
+    "A render is going on": "Es wird gerade gerendert",
+    "There is no render of this scene to light again. Press F12 first":
+        "Von dieser Szene ist nichts gerendert, was neu beleuchtet werden könnte. Zuerst F12 drücken",
+    "The kept passes were deleted from the temporary folder. Press F12":
+        "Die behaltenen Passes wurden aus dem Ordner für temporäre Dateien gelöscht. F12 drücken",
+    "The resolution or the render region has changed since the last render. Press F12":
+        "Auflösung oder Renderbereich haben sich seit dem letzten Rendern geändert. F12 drücken",
+    "View layers were added or renamed since the last render. Press F12":
+        "Seit dem letzten Rendern kamen Ansichtsebenen hinzu oder wurden umbenannt. F12 drücken",
+
+    # What mends a scene
+    "Repair": "Reparieren",
+    "Set Render Engine to EEVEE": "Render-Engine auf EEVEE setzen",
+    "Render this scene with EEVEE. The settings of the other engine are kept":
+        "Diese Szene mit EEVEE rendern. Die Einstellungen der anderen Engine bleiben",
+    "Use a Camera of the Scene": "Eine Kamera der Szene nehmen",
+    "Look through the first camera that the scene holds": "Durch die erste Kamera schauen, die die Szene hat",
+    "Set Lens Type to Perspective": "Objektivtyp auf Perspektive setzen",
+    "Make the camera an ordinary one. Its panorama's settings are kept":
+        "Die Kamera zu einer gewöhnlichen machen. Die Einstellungen des Panoramas bleiben",
+    "Render This View Layer": "Diese Ansichtsebene rendern",
+    "Tick Use for Rendering of the view layer that the window shows":
+        "Für Rendering verwenden bei der Ansichtsebene einschalten, die das Fenster zeigt",
+    "Turn Off Stereoscopy": "Stereoskopie ausschalten",
+    "Render one view, that of the scene's camera": "Eine Ansicht rendern, die der Kamera der Szene",
+    "Render All View Layers": "Alle Ansichtsebenen rendern",
+    "Untick Render Single Layer. The render then takes as long as all view layers that are used":
+        "Einzelne Ebene rendern ausschalten. Das Rendern dauert dann so lange wie alle verwendeten Ansichtsebenen",
+    "Render the Scene": "Die Szene rendern",
+    "Untick Sequencer in Output properties > Post Processing. The strips are kept":
+        "Sequenzer in den Ausgabe-Eigenschaften > Nachbearbeitung ausschalten. Die Streifen bleiben",
+    "Turn Off Ray Tracing": "Raytracing ausschalten",
+    "Turn off EEVEE's ray tracing, so that bounced light is counted once. Its reflections and refractions go too":
+        "EEVEEs Raytracing ausschalten, damit reflektiertes Licht nur einmal zählt. Seine Spiegelungen und Brechungen "
+        "entfallen auch",
+    "Disable Volumes in Renders": "Volumen in Renderings deaktivieren",
+    "Leave the light probe volumes out of renders. Their bakes are kept":
+        "Die Lichtproben-Volumen aus Renderings heraushalten. Was in ihnen gebacken ist, bleibt",
+    "Show That Scene": "Jene Szene zeigen",
+    "Show the scene that this one serves to light in this window":
+        "In diesem Fenster die Szene zeigen, deren Licht diese hier dient",
+    "Add Render Layers Node": "Render-Ebenen-Node hinzufügen",
+    "Add a Render Layers node of this scene at the top level of the compositor, so that Blender renders it":
+        "Auf der obersten Ebene des Compositors einen Render-Ebenen-Node dieser Szene hinzufügen, damit Blender sie "
+        "rendert",
+
+    # What is wrong with a scene
+    "This scene served to light another, which is gone":
+        "Diese Szene diente dem Licht einer anderen, die es nicht mehr gibt",
+    'This scene only serves to light "{}". Render that one': 'Diese Szene dient nur dem Licht von "{}". Jene rendern',
+    "Indirect Light works on EEVEE's passes, and the render engine is {}. Set Render Engine to EEVEE, or untick "
+    "Indirect Light":
+        "Indirektes Licht braucht EEVEEs Passes, und die Render-Engine ist {}. Die Render-Engine auf EEVEE setzen "
+        "oder indirektes Licht ausschalten",
+    "The scene has no camera. Choose one in the Scene properties":
+        "Die Szene hat keine Kamera. In den Szenen-Eigenschaften eine wählen",
+    "The scene has no camera. Add one (Add > Camera) and make it the scene's camera":
+        "Die Szene hat keine Kamera. Eine hinzufügen (Hinzufügen > Kamera) und zur Kamera der Szene machen",
+    'The scene looks through "{}", which is no camera. Choose a camera in the Scene properties':
+        'Die Szene schaut durch "{}", und das ist keine Kamera. In den Szenen-Eigenschaften eine Kamera wählen',
+    'The camera "{}" is panoramic. Set its Lens Type to Perspective or Orthographic':
+        'Die Kamera "{}" ist panoramisch. Ihren Objektivtyp auf Perspektive oder Orthografisch setzen',
+    "No view layer is rendered. Tick Use for Rendering in the View Layer properties":
+        "Keine Ansichtsebene wird gerendert. Für Rendering verwenden in den Eigenschaften der Ansichtsebene "
+        "einschalten",
+    "Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output properties":
+        "Stereo und mehrere Ansichten werden nicht unterstützt. Stereoskopie in den Ausgabe-Eigenschaften ausschalten",
+    "Render Single Layer is on, and with it Blender leaves out the scene that gathers the light. Untick it in the "
+    "View Layer properties":
+        "Einzelne Ebene rendern ist an, und damit lässt Blender die Szene aus, die das Licht sammelt. Es in den "
+        "Eigenschaften der Ansichtsebene ausschalten",
+    "The Video Sequencer's strips are rendered instead of the scene. Untick Sequencer in Output properties > Post "
+    "Processing, or render the scene without strips":
+        "Statt der Szene werden die Streifen des Video-Sequenzers gerendert. Sequenzer in den Ausgabe-Eigenschaften > "
+        "Nachbearbeitung ausschalten oder die Szene ohne Streifen rendern",
+    "EEVEE's ray tracing already adds bounced light: ours would count it twice":
+        "EEVEEs Raytracing fügt schon reflektiertes Licht hinzu: mit unserem zählte es doppelt",
+    "Light probe volumes hold bounced light once they are baked, and ours comes on top. Disable them in renders, or "
+    "free their bakes":
+        "Gebackene Lichtproben-Volumen enthalten reflektiertes Licht, und unseres kommt dazu. Sie in Renderings "
+        "deaktivieren oder das Gebackene freigeben",
+    "These settings were saved by Afterlight {}, and this is {}. What this version does not know is kept in the file, "
+    "but has no effect":
+        "Diese Einstellungen hat Afterlight {} gespeichert, und dies ist {}. Was diese Version nicht kennt, bleibt in "
+        "der Datei, hat aber keine Wirkung",
+    "Afterlight's helper scene was deleted or changed": "Die Hilfsszene von Afterlight wurde gelöscht oder geändert",
+    "Compositing is switched off, so the light can't be added to the picture":
+        "Compositing ist ausgeschaltet; das Licht kann nicht ins Bild kommen",
+    "View layers were added, removed or renamed since Indirect Light was ticked":
+        "Seit indirektes Licht eingeschaltet wurde, kamen Ansichtsebenen hinzu, gingen weg oder wurden umbenannt",
+    'The compositor has no Render Layers node of "{}", so there is no picture to add light to. Add one and link its '
+    "Image":
+        'Der Compositor hat keinen Render-Ebenen-Node von "{}", also kein Bild, in das Licht kommen könnte. Einen '
+        "hinzufügen und sein Bild verbinden",
+    "All Render Layers nodes of this scene are inside node groups, and then Blender does not render the scene. Add "
+    "one at the top level of the compositor; it need not be linked":
+        "Alle Render-Ebenen-Nodes dieser Szene sind in Node-Gruppen, und dann rendert Blender die Szene nicht. Auf "
+        "der obersten Ebene des Compositors einen hinzufügen; verbunden sein muss er nicht",
+    "The node that adds the light to {} was deleted, and the links of the image with it. Link the Image of its Render "
+    "Layers node again":
+        "Der Node, der {} das Licht hinzufügt, wurde gelöscht und mit ihm die Verbindungen des Bildes. Das Bild des "
+        "Render-Ebenen-Nodes neu verbinden",
+    "The compositor uses {} without the indirect light: a node of Afterlight was deleted, or a Render Layers node is "
+    "new":
+        "Der Compositor nimmt {} ohne das indirekte Licht: ein Node von Afterlight wurde gelöscht, oder ein "
+        "Render-Ebenen-Node ist neu",
+    "Afterlight's Render Layers node was deleted from the compositor":
+        "Der Render-Ebenen-Node von Afterlight wurde aus dem Compositor gelöscht",
+    "The indirect light is no longer linked to the node that adds it":
+        "Das indirekte Licht ist nicht mehr mit dem Node verbunden, der es hinzufügt",
+    "A pass that Afterlight reads was switched off": "Ein Pass, den Afterlight liest, wurde ausgeschaltet",
+
+    # What can go wrong in a render
+    "Afterlight (used by its helper scenes)": "Afterlight (für seine Hilfsszenen)",
+    "Afterlight: the picture has no indirect light": "Afterlight: Das Bild hat kein indirektes Licht",
+    "This engine works for Afterlight's helper scenes only. Set Render Engine to EEVEE and tick Indirect Light":
+        "Diese Engine dient nur den Hilfsszenen von Afterlight. Die Render-Engine auf EEVEE setzen und indirektes "
+        "Licht einschalten",
+    "Afterlight met an error of its own ({}). The terminal has the details; please report them":
+        "Afterlight hat einen eigenen Fehler ({}). Im Terminal stehen die Einzelheiten; bitte melden",
+    "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a material that "
+    "divides by zero or a light of unbounded strength":
+        "Afterlight: {} Pixel von {} in {} sind NaN oder unendlich. Sie senden kein indirektes Licht; nach einem "
+        "Material suchen, das durch null teilt, oder einem Licht ohne Grenze",
+    'There is no render of "{}" to light. Render that one, not the scene that serves to light it':
+        'Von "{}" ist nichts gerendert. Jene Szene rendern, nicht die, die ihrem Licht dient',
+    "The passes could not be written to {} ({}). Free some space there, or choose another folder in Preferences > "
+    "File Paths > Temporary Files and restart Blender":
+        "Die Passes ließen sich nicht nach {} schreiben ({}). Dort Platz schaffen oder in Einstellungen > Dateipfade "
+        "> Temporäre Dateien einen anderen Ordner wählen und Blender neu starten",
+    "The passes could not be read back from {} ({}). The disk of the temporary folder may be full":
+        "Die Passes ließen sich nicht aus {} zurücklesen ({}). Der Datenträger des Ordners für temporäre Dateien ist "
+        "vielleicht voll",
+    "The render has no pass {}. Press Repair in the Indirect Light panel, then render again":
+        "Dem Rendering fehlt der Pass {}. Im Panel Indirektes Licht auf Reparieren drücken und neu rendern",
+    "The OpenEXR module can't be imported ({}). It comes with the extension: remove Afterlight in Preferences > Get "
+    "Extensions and install it again from its zip":
+        "Das Modul OpenEXR lässt sich nicht laden ({}). Es gehört zur Erweiterung: Afterlight in Einstellungen > "
+        "Erweiterungen erhalten entfernen und aus seinem Zip neu installieren",
+    "The frame needs a texture of {} x {}, but this GPU's largest is {} x {}. Lower the render resolution":
+        "Das Bild braucht eine Textur von {} x {}, doch die größte dieser GPU ist {} x {}. Die Renderauflösung senken",
+    "Blender has no GPU here. In background mode it needs a graphics driver; on a machine without a display, install "
+    "Mesa's software driver":
+        "Blender hat hier keine GPU. Im Hintergrund braucht es einen Grafiktreiber; auf einem Rechner ohne Bildschirm "
+        "Mesas Softwaretreiber installieren",
+    "The GPU has no memory for a texture of {} x {}. Use a coarser start resolution, or lower the render resolution":
+        "Die GPU hat keinen Speicher für eine Textur von {} x {}. Eine gröbere Startauflösung nehmen oder die "
+        "Renderauflösung senken",
+    "The GPU driver cannot compile the shader '{}'. Update the graphics driver, or try Blender's other GPU backend in "
+    "the preferences":
+        "Der Grafiktreiber kann den Shader '{}' nicht übersetzen. Den Treiber aktualisieren oder in den Einstellungen "
+        "Blenders anderes GPU-Backend versuchen",
+}
