@@ -127,7 +127,7 @@ class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
             for stage, seconds in stages.items():
                 _draw_row(column, say(status.in_words(stage)), f"{seconds:.3f} s")
             column.separator()
-            _draw_row(column, say("Total"), f"{sum(stages.values()):.3f} s")
+            _draw_row(column, say("Total Time"), f"{sum(stages.values()):.3f} s")
         if memory := status.memory(scene):
             column = layout.column(align=True)
             for name, size in memory.items():

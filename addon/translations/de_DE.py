@@ -3,11 +3,11 @@
 
 TEXTS = {
     # Settings
-    "Indirect Light": "Indirektes Licht",
+    "Indirect Light": "Indirekte Beleuchtung",
     "Add one bounce of indirect light to EEVEE's renders, gathered from the passes of the finished frame. To fade it "
     "in an animation, put keyframes on Strength":
         "EEVEEs Bildern indirektes Licht nach einer Reflexion hinzufügen, gesammelt aus den Passes des fertigen "
-        "Bildes. Zum Ein- und Ausblenden in einer Animation Keyframes auf die Stärke setzen",
+        "Bildes. Zum Ein- und Ausblenden in einer Animation Schlüsselbilder auf die Stärke setzen",
     "Last Render": "Letztes Rendern",
     "What kept the last render of this scene from being lit, empty where nothing did":
         "Was das letzte Rendern dieser Szene ohne Licht ließ, sonst leer",
@@ -29,11 +29,11 @@ TEXTS = {
         "Ein Texel für 2 x 2 Pixel: viermal so teuer wie Viertel",
     "Full": "Voll",
     "One texel a pixel: sixteen times the cost of Quarter": "Ein Texel je Pixel: sechzehnmal so teuer wie Viertel",
-    "Samples": "Samples",
+    "Samples": "Abtastwerte",
     "Random samples a texel takes at the finest level, twice as many at each coarser one, where noise shows most. "
     "Time grows in proportion, noise falls with the square root. Where the radius holds fewer texels than that, each "
     "is visited once and there is no noise at all":
-        "Zufällige Samples je Texel auf der feinsten Ebene, doppelt so viele auf jeder gröberen, wo Rauschen am "
+        "Zufällige Abtastwerte je Texel auf der feinsten Ebene, doppelt so viele auf jeder gröberen, wo Rauschen am "
         "meisten auffällt. Die Zeit wächst im gleichen Verhältnis, das Rauschen sinkt mit der Wurzel. Umfasst der "
         "Radius weniger Texel, so wird jedes einmal besucht, und es rauscht gar nicht",
     "Radius": "Radius",
@@ -41,23 +41,23 @@ TEXTS = {
     "over all pixels, but the same samples are spread over more texels and the light gets noisier. Hardly changes the "
     "time":
         "Radius der Scheibe, die auf jeder Ebene abgetastet wird, in Texeln dieser Ebene. Größer kommt der genauen "
-        "Summe über alle Pixel näher, doch dieselben Samples verteilen sich auf mehr Texel, und das Licht rauscht "
+        "Summe über alle Pixel näher, doch dieselben Abtastwerte verteilen sich auf mehr Texel, und das Licht rauscht "
         "stärker. Ändert die Zeit kaum",
     "Seed": "Startwert",
     "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without effect "
     "where there are so many samples that there is no noise":
-        "Muster der zufälligen Samples. Derselbe Startwert ergibt dasselbe Bild, Bit für Bit. Kostet keine Zeit. Ohne "
-        "Wirkung, wo es bei so vielen Samples nicht rauscht",
+        "Muster der zufälligen Abtastwerte. Derselbe Startwert ergibt dasselbe Bild, Bit für Bit. Kostet keine Zeit. "
+        "Ohne Wirkung, wo es bei so vielen Abtastwerten nicht rauscht",
     "Animate Seed": "Startwert animieren",
     "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves. Costs "
     "nothing":
-        "In jedem Frame ein anderes Muster nehmen, damit das Rauschen bei bewegter Kamera nicht am Bild klebt. Kostet "
-        "keine Zeit",
+        "In jedem Einzelbild ein anderes Muster nehmen, damit das Rauschen bei bewegter Kamera nicht am Bild klebt. "
+        "Kostet keine Zeit",
 
     # Panel and menu
-    "Indirect Light Presets": "Vorgaben für indirektes Licht",
-    "Sampling": "Sampling",
-    "Total": "Gesamt",
+    "Indirect Light Presets": "Voreinstellungen für indirektes Licht",
+    "Sampling": "Abtastung",
+    "Total Time": "Zeit gesamt",
     "Write passes": "Passes schreiben",
     "Saving passes": "Passes werden gespeichert",
     "Read passes": "Passes lesen",
@@ -82,8 +82,8 @@ TEXTS = {
     "Copy Indirect Light Settings": "Einstellungen des indirekten Lichts kopieren",
     "Give this scene's settings of Indirect Light to other scenes, as they are in this frame: keyframes and drivers "
     "stay here":
-        "Anderen Szenen die Einstellungen des indirekten Lichts dieser Szene geben, wie sie in diesem Frame sind: "
-        "Keyframes und Treiber bleiben hier",
+        "Anderen Szenen die Einstellungen des indirekten Lichts dieser Szene geben, wie sie in diesem Einzelbild "
+        "sind: Schlüsselbilder und Treiber bleiben hier",
     "Scene": "Szene",
     "The scene that gets the settings, all other scenes where empty":
         "Die Szene, die die Einstellungen bekommt; alle anderen, wo leer",
@@ -96,16 +96,16 @@ TEXTS = {
         "Die Szene ist aus einer anderen Datei verknüpft und lässt sich hier nicht ändern",
     "Reset Indirect Light Settings": "Einstellungen des indirekten Lichts zurücksetzen",
     "Set everything in this panel but its checkbox to the defaults. Keyframes and drivers stay":
-        "Alles in diesem Panel außer seinem Häkchen auf die Standardwerte setzen. Keyframes und Treiber bleiben",
+        "Alles in diesem Panel außer seinem Häkchen auf die Standardwerte setzen. Schlüsselbilder und Treiber bleiben",
     '{} of "{}" has keyframes or a driver, which set it again in every frame':
-        '{} von "{}" hat Keyframes oder einen Treiber, die es in jedem Frame neu setzen',
+        '{} von "{}" hat Schlüsselbilder oder einen Treiber, die es in jedem Einzelbild neu setzen',
     "Indirect Light Help": "Hilfe zum indirekten Licht",
     "Show the page of help that came with the extension in the web browser. It needs no network":
         "Die mitgelieferte Hilfeseite im Webbrowser zeigen (englisch). Sie braucht kein Netz",
     "Help is in {}": "Die Hilfe liegt in {}",
-    "Add Indirect Light Preset": "Vorgabe für indirektes Licht hinzufügen",
+    "Add Indirect Light Preset": "Voreinstellung für indirektes Licht hinzufügen",
     "Keep the settings of Indirect Light as a preset, or remove one":
-        "Die Einstellungen des indirekten Lichts als Vorgabe behalten oder eine entfernen",
+        "Die Einstellungen des indirekten Lichts als Voreinstellung behalten oder eine entfernen",
     "Update Indirect Light": "Indirektes Licht aktualisieren",
     "Gather the light of the last render again with the settings as they are now, and composite the picture. EEVEE "
     "does not render again, so what changed in the scene since does not show":
@@ -116,7 +116,7 @@ TEXTS = {
     "the light then needs another render":
         "Die Passes des letzten Renderns aus dem Ordner für temporäre Dateien entfernen, wo sie bis zum Ende von "
         "Blender bleiben. Das Licht zu aktualisieren braucht dann ein neues Rendern",
-    "Tick Indirect Light first": "Zuerst indirektes Licht einschalten",
+    "Tick Indirect Light first": "Zuerst Indirekte Beleuchtung einschalten",
     "A render is going on": "Es wird gerade gerendert",
     "There is no render of this scene to light again. Press F12 first":
         "Von dieser Szene ist nichts gerendert, was neu beleuchtet werden könnte. Zuerst F12 drücken",
@@ -129,22 +129,22 @@ TEXTS = {
 
     # What mends a scene
     "Repair": "Reparieren",
-    "Set Render Engine to EEVEE": "Render-Engine auf EEVEE setzen",
+    "Set Render Engine to EEVEE": "Renderengine auf EEVEE setzen",
     "Render this scene with EEVEE. The settings of the other engine are kept":
         "Diese Szene mit EEVEE rendern. Die Einstellungen der anderen Engine bleiben",
     "Use a Camera of the Scene": "Eine Kamera der Szene nehmen",
     "Look through the first camera that the scene holds": "Durch die erste Kamera schauen, die die Szene hat",
-    "Set Lens Type to Perspective": "Objektivtyp auf Perspektive setzen",
+    "Set Lens Type to Perspective": "Lens Type auf Perspektive setzen",
     "Make the camera an ordinary one. Its panorama's settings are kept":
         "Die Kamera zu einer gewöhnlichen machen. Die Einstellungen des Panoramas bleiben",
     "Render This View Layer": "Diese Ansichtsebene rendern",
     "Tick Use for Rendering of the view layer that the window shows":
-        "Für Rendering verwenden bei der Ansichtsebene einschalten, die das Fenster zeigt",
+        "Benutze zum rendern bei der Ansichtsebene einschalten, die das Fenster zeigt",
     "Turn Off Stereoscopy": "Stereoskopie ausschalten",
     "Render one view, that of the scene's camera": "Eine Ansicht rendern, die der Kamera der Szene",
     "Render All View Layers": "Alle Ansichtsebenen rendern",
     "Untick Render Single Layer. The render then takes as long as all view layers that are used":
-        "Einzelne Ebene rendern ausschalten. Das Rendern dauert dann so lange wie alle verwendeten Ansichtsebenen",
+        "Eine Ebene rendern ausschalten. Das Rendern dauert dann so lange wie alle verwendeten Ansichtsebenen",
     "Render the Scene": "Die Szene rendern",
     "Untick Sequencer in Output properties > Post Processing. The strips are kept":
         "Sequenzer in den Ausgabe-Eigenschaften > Nachbearbeitung ausschalten. Die Streifen bleiben",
@@ -169,8 +169,8 @@ TEXTS = {
     'This scene only serves to light "{}". Render that one': 'Diese Szene dient nur dem Licht von "{}". Jene rendern',
     "Indirect Light works on EEVEE's passes, and the render engine is {}. Set Render Engine to EEVEE, or untick "
     "Indirect Light":
-        "Indirektes Licht braucht EEVEEs Passes, und die Render-Engine ist {}. Die Render-Engine auf EEVEE setzen "
-        "oder indirektes Licht ausschalten",
+        "Indirektes Licht braucht EEVEEs Passes, und die Renderengine ist {}. Die Renderengine auf EEVEE setzen oder "
+        "indirektes Licht ausschalten",
     "The scene has no camera. Choose one in the Scene properties":
         "Die Szene hat keine Kamera. In den Szenen-Eigenschaften eine wählen",
     "The scene has no camera. Add one (Add > Camera) and make it the scene's camera":
@@ -178,15 +178,14 @@ TEXTS = {
     'The scene looks through "{}", which is no camera. Choose a camera in the Scene properties':
         'Die Szene schaut durch "{}", und das ist keine Kamera. In den Szenen-Eigenschaften eine Kamera wählen',
     'The camera "{}" is panoramic. Set its Lens Type to Perspective or Orthographic':
-        'Die Kamera "{}" ist panoramisch. Ihren Objektivtyp auf Perspektive oder Orthografisch setzen',
+        'Die Kamera "{}" ist panoramisch. Ihren Lens Type auf Perspektive oder Orthografisch setzen',
     "No view layer is rendered. Tick Use for Rendering in the View Layer properties":
-        "Keine Ansichtsebene wird gerendert. Für Rendering verwenden in den Eigenschaften der Ansichtsebene "
-        "einschalten",
+        "Keine Ansichtsebene wird gerendert. Benutze zum rendern in den Eigenschaften der Ansichtsebene einschalten",
     "Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output properties":
         "Stereo und mehrere Ansichten werden nicht unterstützt. Stereoskopie in den Ausgabe-Eigenschaften ausschalten",
     "Render Single Layer is on, and with it Blender leaves out the scene that gathers the light. Untick it in the "
     "View Layer properties":
-        "Einzelne Ebene rendern ist an, und damit lässt Blender die Szene aus, die das Licht sammelt. Es in den "
+        "Eine Ebene rendern ist an, und damit lässt Blender die Szene aus, die das Licht sammelt. Es in den "
         "Eigenschaften der Ansichtsebene ausschalten",
     "The Video Sequencer's strips are rendered instead of the scene. Untick Sequencer in Output properties > Post "
     "Processing, or render the scene without strips":
@@ -233,7 +232,7 @@ TEXTS = {
     "Afterlight (used by its helper scenes)": "Afterlight (für seine Hilfsszenen)",
     "Afterlight: the picture has no indirect light": "Afterlight: Das Bild hat kein indirektes Licht",
     "This engine works for Afterlight's helper scenes only. Set Render Engine to EEVEE and tick Indirect Light":
-        "Diese Engine dient nur den Hilfsszenen von Afterlight. Die Render-Engine auf EEVEE setzen und indirektes "
+        "Diese Engine dient nur den Hilfsszenen von Afterlight. Die Renderengine auf EEVEE setzen und indirektes "
         "Licht einschalten",
     "Afterlight met an error of its own ({}). The terminal has the details; please report them":
         "Afterlight hat einen eigenen Fehler ({}). Im Terminal stehen die Einzelheiten; bitte melden",
@@ -245,17 +244,17 @@ TEXTS = {
         'Von "{}" ist nichts gerendert. Jene Szene rendern, nicht die, die ihrem Licht dient',
     "The passes could not be written to {} ({}). Free some space there, or choose another folder in Preferences > "
     "File Paths > Temporary Files and restart Blender":
-        "Die Passes ließen sich nicht nach {} schreiben ({}). Dort Platz schaffen oder in Einstellungen > Dateipfade "
-        "> Temporäre Dateien einen anderen Ordner wählen und Blender neu starten",
+        "Die Passes ließen sich nicht nach {} schreiben ({}). Dort Platz schaffen oder in Benutzereinstellungen > "
+        "Dateipfade > Temporäre Dateien einen anderen Ordner wählen und Blender neu starten",
     "The passes could not be read back from {} ({}). The disk of the temporary folder may be full":
         "Die Passes ließen sich nicht aus {} zurücklesen ({}). Der Datenträger des Ordners für temporäre Dateien ist "
         "vielleicht voll",
     "The render has no pass {}. Press Repair in the Indirect Light panel, then render again":
-        "Dem Rendering fehlt der Pass {}. Im Panel Indirektes Licht auf Reparieren drücken und neu rendern",
+        "Dem Rendering fehlt der Pass {}. Im Panel Indirekte Beleuchtung auf Reparieren drücken und neu rendern",
     "The OpenEXR module can't be imported ({}). It comes with the extension: remove Afterlight in Preferences > Get "
     "Extensions and install it again from its zip":
-        "Das Modul OpenEXR lässt sich nicht laden ({}). Es gehört zur Erweiterung: Afterlight in Einstellungen > "
-        "Erweiterungen erhalten entfernen und aus seinem Zip neu installieren",
+        "Das Modul OpenEXR lässt sich nicht laden ({}). Es gehört zur Erweiterung: Afterlight in "
+        "Benutzereinstellungen > Get Extensions entfernen und aus seinem Zip neu installieren",
     "The frame needs a texture of {} x {}, but this GPU's largest is {} x {}. Lower the render resolution":
         "Das Bild braucht eine Textur von {} x {}, doch die größte dieser GPU ist {} x {}. Die Renderauflösung senken",
     "Blender has no GPU here. In background mode it needs a graphics driver; on a machine without a display, install "
@@ -267,6 +266,6 @@ TEXTS = {
         "Renderauflösung senken",
     "The GPU driver cannot compile the shader '{}'. Update the graphics driver, or try Blender's other GPU backend in "
     "the preferences":
-        "Der Grafiktreiber kann den Shader '{}' nicht übersetzen. Den Treiber aktualisieren oder in den Einstellungen "
-        "Blenders anderes GPU-Backend versuchen",
+        "Der Grafiktreiber kann den Shader '{}' nicht übersetzen. Den Treiber aktualisieren oder in den "
+        "Benutzereinstellungen Blenders anderes GPU-Backend versuchen",
 }
