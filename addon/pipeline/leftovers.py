@@ -19,7 +19,7 @@ except ImportError:
 
 PREFIX = "afterlight_"      # of all our files
 LOCK = ".afterlight.lock"   # one in each folder that holds some
-LONGEST = 0.01              # seconds that looking may take: folders that are left then wait for another start
+LONGEST = 0.005             # seconds that looking may take: folders that are left then wait for another start
 
 _lock = None
 
@@ -50,16 +50,16 @@ def release():
 def clear():
     """Remove what killed Blenders left beside our own temporary folder: never what belongs to one that runs."""
     end = time.perf_counter() + LONGEST
+    base = os.path.dirname(os.path.normpath(bpy.app.tempdir))
     try:
-        with os.scandir(os.path.dirname(os.path.normpath(bpy.app.tempdir))) as entries:
-            folders = [entry.path for entry in entries if entry.name.startswith("blender_")]
+        folders = [name for name in os.listdir(base) if name.startswith("blender_")]
     except OSError:
         return
-    random.shuffle(folders)  # so that every folder has its turn
-    for folder in folders:
+    first = random.randrange(len(folders) + 1)  # so that every folder has its turn
+    for folder in folders[first:] + folders[:first]:
         if time.perf_counter() > end:
             break
-        _clear(folder)
+        _clear(os.path.join(base, folder))
 
 
 def _clear(folder):
