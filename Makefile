@@ -31,8 +31,11 @@ speed: setup     ## the last of these: the light alone, pass by pass, on this ma
 accuracy: package ## error beside EEVEE's own GI and Cycles, and where it comes from; half an hour the first time
 	$(python) -m benchmarks.accuracy --out docs/accuracy --page docs/accuracy.md
 
+soak: package    ## 300 frames in one process: does memory grow, does anything stay behind? Half an hour; needs Linux
+	$(python) -m benchmarks.soak
+
 clean:           ## remove what was made, but for .venv and the downloaded wheels
 	rm -rf dist build .pytest_cache .hypothesis
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test desktop-test package demo samples bench speed accuracy clean
+.PHONY: help setup test desktop-test package demo samples bench speed accuracy soak clean

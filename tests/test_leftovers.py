@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender killed in the middle: the file opens and renders, and the next start clears what lies in the temporary folder."""
+"""Blender killed in the middle: the file opens and renders, and the next start clears the temporary folder."""
 
 import os
 import subprocess
@@ -68,8 +68,8 @@ def restart(afterlight):
 
 def test_blender_killed_in_the_gather(fresh, afterlight, tmp_path):
     blend = tmp_path / "ticked.blend"
-    killed = subprocess.Popen([sys.executable, "-c", RENDERED, afterlight.__name__, str(blend), str(tmp_path / "cut.exr")],
-                              stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": str(TESTS)})
+    command = [sys.executable, "-c", RENDERED, afterlight.__name__, str(blend), str(tmp_path / "cut.exr")]
+    killed = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": str(TESTS)})
     try:
         line = next((line for line in killed.stdout if line.startswith("gathering in ")), "")
         folder = Path(line.strip().removeprefix("gathering in "))
