@@ -60,7 +60,8 @@ void main()
       ivec2 other = texel + ivec2(texelFetch(offsets, ivec2(entry % OFFSETS_WIDTH, entry / OFFSETS_WIDTH), 0).xy);
       Surfel emitter = unpack_surfel(texelFetch(surfels, origin + other, 0), other, level);
       float form = form_factor(receiver.place, normal, emitter.place, emitter.area, emitter.vector_area);
-      gathered += (is_inside(other, size) ? form : 0.0) * vec4(emitter.radiance, 1.0);
+      // Not 0 times it: beside the level lies what was in the memory before, and that may be NaN.
+      gathered += is_inside(other, size) ? form * vec4(emitter.radiance, 1.0) : vec4(0.0);
     }
     gathered *= vec4(PI, PI, PI, 1.0) * (float(parameters.regions[level].z) / float(samples));
   }
