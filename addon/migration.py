@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of earlier versions: their settings become this version's, and mean what they meant, as soon as a file is opened.
+"""Files of earlier versions: as soon as one is opened its settings become this version's, and mean what they meant.
 
 Settings of a newer version are left as they are; checks.py says so.
 """

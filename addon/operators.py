@@ -68,8 +68,8 @@ class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
 class AFTERLIGHT_OT_copy_settings(_OnEditableScene, Operator):
     bl_idname = "afterlight.copy_settings"
     bl_label = "Copy Indirect Light Settings"
-    bl_description = ("Give this scene's settings of Indirect Light to other scenes, as they are in this frame: keyframes "
-                      "and drivers stay here")
+    bl_description = ("Give this scene's settings of Indirect Light to other scenes, as they are in this frame: "
+                      "keyframes and drivers stay here")
 
     scene: StringProperty(name="Scene", description="The scene that gets the settings, all other scenes where empty")
     enable: BoolProperty(name="Tick Too", description="Tick Indirect Light in those scenes as well")

@@ -78,6 +78,7 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
         AFTERLIGHT_PT_presets.draw_panel_header(layout)
         layout.menu("AFTERLIGHT_MT_indirect_light", icon="DOWNARROW_HLT", text="")
         layout.operator("afterlight.help", icon="QUESTION", text="").section = ""
+        layout.separator(factor=0.5)  # from the handle by which panels are moved
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.afterlight
@@ -127,7 +128,7 @@ class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
             for stage, seconds in stages.items():
                 _draw_row(column, say(status.in_words(stage)), f"{seconds:.3f} s")
             column.separator()
-            _draw_row(column, say("Total Time"), f"{sum(stages.values()):.3f} s")
+            _draw_row(column, say("Total time"), f"{sum(stages.values()):.3f} s")
         if memory := status.memory(scene):
             column = layout.column(align=True)
             for name, size in memory.items():

@@ -16,8 +16,8 @@ VERSION = 0, 2, 0          # the manifest's; what older ones stored otherwise: m
 
 @dataclass(frozen=True)
 class Parameter:
-    """One setting that a person can change. `options` go to Blender's property as they are. docs/help.html has a section
-    with the id `name`."""
+    """One setting that a person can change. `options` go to Blender's property as they are. docs/help.html has a
+    section with the id `name`."""
 
     name: str
     kind: callable
@@ -54,18 +54,18 @@ PARAMETERS = (
     Parameter(
         "radius", IntProperty, "Radius",
         "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact "
-        "sum over all pixels, but the same samples are spread over more texels and the light gets noisier. Hardly "
-        "changes the time",
+        "sum over all pixels, but the same samples are spread over more texels and the light gets noisier. Time "
+        "depends on the samples far more than on this",
         {"default": 16, "min": 2, "max": 64, "soft_min": 4, "soft_max": 32, "subtype": "PIXEL"}),
     Parameter(
         "seed", IntProperty, "Seed",
-        "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without effect "
-        "where there are so many samples that there is no noise",
+        "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without "
+        "effect where there are so many samples that there is no noise",
         {"default": 0, "min": 0, "max": 2**31 - 1}),
     Parameter(
         "use_animated_seed", BoolProperty, "Animate Seed",
-        "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves. Costs "
-        "nothing",
+        "Use another pattern in every frame, so that the noise does not stick to the picture as the camera moves. "
+        "Costs nothing",
         {"default": False}),
 )
 

@@ -32,7 +32,8 @@ def values(scene, names):
 
 
 def stored(scene, addon):
-    return {parameter.name for parameter in addon.settings.PARAMETERS if scene.afterlight.is_property_set(parameter.name)}
+    names = {parameter.name for parameter in addon.settings.PARAMETERS}
+    return {name for name in names if scene.afterlight.is_property_set(name)}
 
 
 def test_versions_agree(addon):

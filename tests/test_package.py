@@ -204,7 +204,8 @@ def test_source_follows_the_rules_for_extensions(path):
     text = path.read_text()
     tree = ast.parse(text)
     allowed = (sys.stdlib_module_names - {"threading", "concurrent", "multiprocessing", "subprocess"}) | {
-        "blf", "bpy", "bpy_extras", "bl_operators", "bl_ui", "gpu", "gpu_extras", "mathutils", "idprop", "numpy", "OpenEXR"}
+        "blf", "bpy", "bpy_extras", "bl_operators", "bl_ui", "gpu", "gpu_extras", "mathutils", "idprop", "numpy",
+        "OpenEXR"}
     wrong = [f"line {line}: import {name}" for level, name, line in imports(tree) if level == 0 and name not in allowed]
     wrong += [f"line {node.lineno}: sys.{node.attr}" for node in ast.walk(tree)
               if isinstance(node, ast.Attribute) and root_name(node) == "sys" and node.attr in ("path", "meta_path")]

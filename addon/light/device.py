@@ -22,8 +22,8 @@ STRIP = 64, 1
 
 
 class GpuUnavailable(RuntimeError):
-    """There is no GPU that can do this; the message says why and what to do. args: the text and what goes into its braces,
-    apart, so that the text can be translated."""
+    """There is no GPU that can do this; the message says why and what to do. args: the text and what goes into its
+    braces, apart, so that the text can be translated."""
 
     def __str__(self):
         text, *values = self.args

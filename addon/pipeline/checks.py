@@ -35,8 +35,8 @@ def findings(scene):
         found.append(Finding(say("Light probe volumes hold bounced light once they are baked, and ours comes on top. "
                                  "Disable them in renders, or free their bakes"), "PROBES", fatal=False))
     if tuple(scene.afterlight.version) > settings.VERSION:
-        found.append(Finding(say("These settings were saved by Afterlight {}, and this is {}. What this version does not know "
-                                 "is kept in the file, but has no effect", _dotted(scene.afterlight.version),
+        found.append(Finding(say("These settings were saved by Afterlight {}, and this is {}. What this version does "
+                                 "not know is kept in the file, but has no effect", _dotted(scene.afterlight.version),
                                  _dotted(settings.VERSION)), fatal=False))
     return found
 
@@ -51,8 +51,8 @@ def counts_twice(scene):
 def _of_engine(scene):
     if scene.render.engine != "BLENDER_EEVEE" and not relight.is_replayed(scene):
         engine = scene.render.engine.removeprefix("BLENDER_").title()
-        yield Finding(say("Indirect Light works on EEVEE's passes, and the render engine is {}. Set Render Engine to EEVEE, "
-                          "or untick Indirect Light", engine), "ENGINE")
+        yield Finding(say("Indirect Light works on EEVEE's passes, and the render engine is {}. Set Render Engine to "
+                          "EEVEE, or untick Indirect Light", engine), "ENGINE")
 
 
 def _of_camera(scene):
@@ -64,18 +64,19 @@ def _of_camera(scene):
         yield Finding(say('The scene looks through "{}", which is no camera. Choose a camera in the Scene properties',
                           camera.name), spare)
     elif camera.data.type not in {"PERSP", "ORTHO"}:
-        yield Finding(say('The camera "{}" is panoramic. Set its Lens Type to Perspective or Orthographic', camera.name),
-                      "LENS" if camera.data.is_editable else "")
+        yield Finding(say('The camera "{}" is panoramic. Set its Lens Type to Perspective or Orthographic',
+                          camera.name), "LENS" if camera.data.is_editable else "")
 
 
 def _of_layers(scene):
     """What keeps Blender from rendering the scene as one picture through all its view layers."""
     render = scene.render
     if not any(layer.use for layer in scene.view_layers):
-        yield Finding(say("No view layer is rendered. Tick Use for Rendering in the View Layer properties"), "VIEW_LAYER")
+        yield Finding(say("No view layer is rendered. Tick Use for Rendering in the View Layer properties"),
+                      "VIEW_LAYER")
     if render.use_multiview:
-        yield Finding(say("Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output properties"),
-                      "STEREO")
+        yield Finding(say("Stereo and multi-view renders are not supported. Untick Stereoscopy in the Output "
+                          "properties"), "STEREO")
     if render.use_single_layer:
         yield Finding(say("Render Single Layer is on, and with it Blender leaves out the scene that gathers the light. "
                           "Untick it in the View Layer properties"), "SINGLE_LAYER")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What mends a scene at a click, where that is safe: each cure changes one thing that the user can see, and undo takes it
-back. checks.py says which scene needs which."""
+"""What mends a scene at a click, where that is safe: each cure changes one thing that the user can see, and undo takes
+it back. checks.py says which scene needs which."""
 
 from dataclasses import dataclass
 
@@ -87,23 +87,26 @@ CURES = {
         "Repair", "Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor",
         _repair),
     "ENGINE": Cure(
-        "Set Render Engine to EEVEE", "Render this scene with EEVEE. The settings of the other engine are kept", _eevee),
+        "Set Render Engine to EEVEE", "Render this scene with EEVEE. The settings of the other engine are kept",
+        _eevee),
     "CAMERA": Cure(
         "Use a Camera of the Scene", "Look through the first camera that the scene holds", _camera),
     "LENS": Cure(
-        "Set Lens Type to Perspective", "Make the camera an ordinary one. Its panorama's settings are kept", _perspective),
+        "Set Lens Type to Perspective", "Make the camera an ordinary one. Its panorama's settings are kept",
+        _perspective),
     "VIEW_LAYER": Cure(
         "Render This View Layer", "Tick Use for Rendering of the view layer that the window shows", _view_layer),
     "STEREO": Cure(
         "Turn Off Stereoscopy", "Render one view, that of the scene's camera", _no_stereo),
     "SINGLE_LAYER": Cure(
-        "Render All View Layers", "Untick Render Single Layer. The render then takes as long as all view layers that are "
-        "used", _all_layers),
+        "Render All View Layers", "Untick Render Single Layer. The render then takes as long as all view layers that "
+        "are used", _all_layers),
     "SEQUENCER": Cure(
-        "Render the Scene", "Untick Sequencer in Output properties > Post Processing. The strips are kept", _no_sequencer),
+        "Render the Scene", "Untick Sequencer in Output properties > Post Processing. The strips are kept",
+        _no_sequencer),
     "RAY_TRACING": Cure(
-        "Turn Off Ray Tracing", "Turn off EEVEE's ray tracing, so that bounced light is counted once. Its reflections and "
-        "refractions go too", _no_ray_tracing),
+        "Turn Off Ray Tracing", "Turn off EEVEE's ray tracing, so that bounced light is counted once. Its reflections "
+        "and refractions go too", _no_ray_tracing),
     "PROBES": Cure(
         "Disable Volumes in Renders", "Leave the light probe volumes out of renders. Their bakes are kept", _no_probes),
     "SHOW_LIT": Cure(

@@ -64,8 +64,8 @@ class AfterlightEngine(bpy.types.RenderEngine):
             return
         source = wiring.source(depsgraph.scene)
         if source is None:
-            self._fail(depsgraph.scene, say("This engine works for Afterlight's helper scenes only. Set Render Engine to "
-                                            "EEVEE and tick Indirect Light"))
+            self._fail(depsgraph.scene, say("This engine works for Afterlight's helper scenes only. Set Render Engine "
+                                            "to EEVEE and tick Indirect Light"))
             return
         again = relight.kept(source) if relight.is_replayed(source) else None
         self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0], again)
@@ -150,8 +150,9 @@ class AfterlightEngine(bpy.types.RenderEngine):
                                         broken=broken)
         for name, count in broken.items():
             self.report({"WARNING"}, say(
-                "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a material "
-                "that divides by zero or a light of unbounded strength", count, name.replace("_", " "), shot.layer))
+                "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "
+                "material that divides by zero or a light of unbounded strength",
+                count, name.replace("_", " "), shot.layer))
         for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
             shot.spent(stage, seconds)
         return picture

@@ -99,16 +99,17 @@ def faults(scene):
         return {say("View layers were added, removed or renamed since Indirect Light was ticked"): "REPAIR"}
     pictures = nodes.pictures(tree, scene)
     if not pictures:
-        return {say('The compositor has no Render Layers node of "{}", so there is no picture to add light to. Add one and '
-                    "link its Image", scene.name): ""}
+        return {say('The compositor has no Render Layers node of "{}", so there is no picture to add light to. Add one '
+                    "and link its Image", scene.name): ""}
     if not any(picture.id_data == tree for picture in pictures):
-        return {say("All Render Layers nodes of this scene are inside node groups, and then Blender does not render the "
-                    "scene. Add one at the top level of the compositor; it need not be linked"): "RENDER_LAYERS"}
+        return {say("All Render Layers nodes of this scene are inside node groups, and then Blender does not render "
+                    "the scene. Add one at the top level of the compositor; it need not be linked"): "RENDER_LAYERS"}
     found = {}
     lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, scene, helper)]
-    if lost:
-        found[say("The node that adds the light to {} was deleted, and the links of the image with it. Link the Image of "
-                  "its Render Layers node again", ", ".join(lost))] = "REPAIR" if tree == scene.afterlight.own_tree else ""
+    if lost:  # where links went is known in our own tree only
+        found[say("The node that adds the light to {} was deleted, and the links of the image with it. Link the Image "
+                  "of its Render Layers node again", ", ".join(lost))] = (
+                      "REPAIR" if tree == scene.afterlight.own_tree else "")
     dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
     if dark:
         found[say("The compositor uses {} without the indirect light: a node of Afterlight was deleted, or a Render "

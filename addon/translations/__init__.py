@@ -2,7 +2,7 @@
 """Afterlight in other languages. The English texts in the code are the keys, as in Blender's own translations.
 
 Blender translates names, tooltips and labels by itself. What is made of a text and values goes through say(). Another
-language is another module like de_DE.py; tests/test_panel.py says what it lacks.
+language is another module like de_DE.py; tests/test_words.py says what it lacks.
 """
 
 import bpy

@@ -38,11 +38,11 @@ TEXTS = {
         "Radius weniger Texel, so wird jedes einmal besucht, und es rauscht gar nicht",
     "Radius": "Radius",
     "Radius of the disk that is sampled at each level, in texels of that level. Larger is closer to the exact sum "
-    "over all pixels, but the same samples are spread over more texels and the light gets noisier. Hardly changes the "
-    "time":
+    "over all pixels, but the same samples are spread over more texels and the light gets noisier. Time depends on "
+    "the samples far more than on this":
         "Radius der Scheibe, die auf jeder Ebene abgetastet wird, in Texeln dieser Ebene. Größer kommt der genauen "
         "Summe über alle Pixel näher, doch dieselben Abtastwerte verteilen sich auf mehr Texel, und das Licht rauscht "
-        "stärker. Ändert die Zeit kaum",
+        "stärker. Die Zeit hängt weit mehr von den Abtastwerten ab",
     "Seed": "Startwert",
     "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without effect "
     "where there are so many samples that there is no noise":
@@ -57,7 +57,7 @@ TEXTS = {
     # Panel and menu
     "Indirect Light Presets": "Voreinstellungen für indirektes Licht",
     "Sampling": "Abtastung",
-    "Total Time": "Zeit gesamt",
+    "Total time": "Zeit gesamt",
     "Write passes": "Passes schreiben",
     "Saving passes": "Passes werden gespeichert",
     "Read passes": "Passes lesen",

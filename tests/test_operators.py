@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings from scene to scene, presets, keyframes and drivers."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from drawing import Layout, drawn
+from scenes import box
+
+import extension
+
+
+@pytest.fixture
+def scene(fresh):
+    return box(fresh, samples=1)
+
+
+@pytest.fixture
+def addon(afterlight):
+    return afterlight.addon
+
+
+# Operators
+
+def test_settings_go_to_other_scenes(scene, addon):
+    settings, names = scene.afterlight, [parameter.name for parameter in addon.settings.PARAMETERS]
+    mine = dict(strength=0.5, start="QUARTER", samples=100, radius=9, seed=3, use_animated_seed=True)
+    assert sorted(mine) == sorted(names)
+    assert not bpy.ops.afterlight.copy_settings.poll(), "there is no other scene"
+    for name, value in mine.items():
+        setattr(settings, name, value)
+    settings.enabled = True
+    two, three = bpy.data.scenes.new("Two"), bpy.data.scenes.new("Three")
+    menu = drawn(addon.panel.AFTERLIGHT_MT_copy_settings)
+    assert [options["text"] for kind, _, options, _ in menu if kind == "operator"] == ["To All Scenes", "Three", "Two"]
+    defaults = {name: getattr(three.afterlight, name) for name in names}
+    assert bpy.ops.afterlight.copy_settings(scene="Two") == {"FINISHED"}
+    assert {name: getattr(two.afterlight, name) for name in names} == mine and not two.afterlight.enabled
+    assert {name: getattr(three.afterlight, name) for name in names} == defaults
+    assert bpy.ops.afterlight.copy_settings(enable=True) == {"FINISHED"}
+    assert {name: getattr(three.afterlight, name) for name in names} == mine
+    assert two.afterlight.enabled and three.afterlight.enabled and not addon.pipeline.wiring.faults(three)
+    with pytest.raises(RuntimeError, match='no other scene "Four"'):
+        bpy.ops.afterlight.copy_settings(scene="Four")
+
+
+def test_reset_gives_the_defaults_and_names_what_is_animated(scene, addon, capfd):
+    settings = scene.afterlight
+    defaults = {parameter.name: getattr(settings, parameter.name) for parameter in addon.settings.PARAMETERS}
+    settings.strength, settings.start, settings.samples, settings.radius, settings.seed = 0.5, "FULL", 99, 9, 3
+    settings.use_animated_seed = settings.enabled = True
+    assert bpy.ops.afterlight.reset() == {"FINISHED"}
+    assert {name: getattr(settings, name) for name in defaults} == defaults and settings.enabled
+    settings.keyframe_insert("radius", frame=1)
+    settings.driver_add("seed")
+    capfd.readouterr()
+    bpy.ops.afterlight.reset()
+    assert 'Radius, Seed of "Scene" has keyframes or a driver' in "".join(capfd.readouterr())
+
+
+def test_undo_takes_operators_back(scene):
+    other = bpy.data.scenes.new("Other")
+    scene.afterlight.samples = 99
+    bpy.ops.ed.undo_push(message="before")
+    for operator in (bpy.ops.afterlight.copy_settings, bpy.ops.afterlight.reset):
+        assert "UNDO" in getattr(bpy.types, operator.idname()).bl_options
+        operator()
+        bpy.ops.ed.undo_push(message="after")
+        bpy.ops.ed.undo()
+        assert bpy.data.scenes["Scene"].afterlight.samples == 99
+        assert bpy.data.scenes["Other"].afterlight.samples == 256
+
+
+def test_search_finds_what_the_menus_hold(scene, addon):
+    """F3 looks through the menus that hang on the top bar's; only operators in one of them are found."""
+    top = []
+    for function in bpy.types.TOPBAR_MT_render.draw._draw_funcs:
+        if function.__module__.startswith(extension.MODULE):
+            function(SimpleNamespace(layout=Layout(top)), bpy.context)
+    waiting = [arguments[0] for kind, arguments, _, _ in top if kind == "menu"]
+    assert waiting == ["AFTERLIGHT_MT_indirect_light"]
+    bpy.data.scenes.new("Other")
+    found = set()
+    while waiting:
+        for kind, arguments, _, _ in drawn(getattr(bpy.types, waiting.pop())):
+            if kind == "menu":
+                waiting.append(arguments[0])
+            elif kind == "operator":
+                found.add(arguments[0])
+    everything = {f"afterlight.{name}" for name in dir(bpy.ops.afterlight)}
+    internal = {"afterlight.mend", "afterlight.preset_add"}  # with a button of their own beside what they are for
+    assert found >= everything - internal - {"afterlight.update", "afterlight.free_passes"}
+
+
+def test_operators_say_why_they_are_grey(scene):
+    assert not bpy.ops.afterlight.repair.poll()
+    with pytest.raises(RuntimeError, match="Tick Indirect Light first"):
+        bpy.ops.afterlight.repair()
+    with pytest.raises(RuntimeError, match="no other scene"):
+        bpy.ops.afterlight.copy_settings()
+
+
+# Presets
+
+def test_presets_are_added_and_removed_as_blenders_own(scene, addon):
+    settings, menu = scene.afterlight, addon.panel.AFTERLIGHT_PT_presets
+
+    def quality():
+        return settings.start, settings.samples, settings.radius
+
+    shipped = bpy.utils.preset_find("draft", "afterlight")
+    settings.start, settings.samples, settings.radius, settings.strength = "FULL", 123, 21, 0.3
+    assert bpy.ops.afterlight.preset_add(name="My Shot") == {"FINISHED"}
+    path = Path(bpy.utils.preset_find("My_Shot", "afterlight"))
+    assert path.is_relative_to(bpy.utils.user_resource("SCRIPTS")), "not in the add-on's own folder"
+    assert bpy.ops.afterlight.preset_add(name="My Shot") == {"CANCELLED"}, "the name is taken"
+    bpy.ops.script.execute_preset(filepath=shipped, menu_idname="AFTERLIGHT_PT_presets")
+    assert quality() == ("QUARTER", 64, 8)
+    bpy.ops.script.execute_preset(filepath=str(path), menu_idname="AFTERLIGHT_PT_presets")
+    assert quality() == ("FULL", 123, 21) and settings.strength == pytest.approx(0.3)
+    assert menu.bl_label == "My Shot"
+    assert bpy.ops.afterlight.preset_add(name="My Shot", remove_name=True) == {"FINISHED"} and not path.exists()
+    assert bpy.ops.afterlight.preset_add(name="draft", remove_name=True) == {"CANCELLED"} and Path(shipped).exists()
+
+
+# Keyframes and drivers
+
+def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, tmp_path, monkeypatch):
+    """What the engine hands to the light, in a rendered animation."""
+    seen = []
+    gather = addon.pipeline.engine.light.gather_indirect
+
+    def spy(passes, camera, settings, **options):
+        seen.append(settings)
+        return gather(passes, camera, settings, **options)
+
+    monkeypatch.setattr(addon.pipeline.engine.light, "gather_indirect", spy)
+    near = pytest.approx
+    settings = scene.afterlight
+    settings.enabled = True
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.render.filepath = str(tmp_path / "frame_")
+    keyed = {"strength": (1.0, 0.5, 0.25), "start": ("QUARTER", "HALF", "FULL"), "samples": (16, 32, 64),
+             "radius": (4, 6, 8), "seed": (1, 5, 9), "use_animated_seed": (False, True, False)}
+    assert keyed.keys() == {parameter.name for parameter in addon.settings.PARAMETERS}
+    for name, values in keyed.items():
+        for frame, value in enumerate(values, 1):
+            setattr(settings, name, value)
+            assert settings.keyframe_insert(name, frame=frame), name
+    scene.frame_set(1)
+    bpy.ops.render.render(animation=True)
+    assert [(each.strength, each.start, each.samples, each.radius, each.seed) for each in seen] == [
+        (1.0, 4, 16, 4, 1), (0.5, 2, 32, 6, 5 + 2 * 7919), (0.25, 1, 64, 8, 9)]
+
+    seen.clear()
+    scene.animation_data_clear()
+    drivers = {"strength": "frame / 4", "start": "3 - frame", "samples": "16 * frame", "radius": "3 + frame",
+               "seed": "100 + frame", "use_animated_seed": "frame == 2"}
+    assert drivers.keys() == keyed.keys()
+    for name, expression in drivers.items():
+        settings.driver_add(name).driver.expression = expression
+    scene.frame_set(1)
+    bpy.ops.render.render(animation=True)
+    assert [(each.strength, each.start, each.samples, each.radius, each.seed) for each in seen] == [
+        (near(0.25), 1, 16, 4, 101), (near(0.5), 2, 32, 5, 102 + 2 * 7919), (near(0.75), 4, 48, 6, 103)]
