@@ -202,6 +202,8 @@ def faults(found):
         yield f"images left in the file: {found['images'][0]}, then {found['images'][-1]}"
     if max(found["descriptors"][last]) > max(found["descriptors"][warm]):
         yield f"open files: {max(found['descriptors'][warm])}, then {max(found['descriptors'][last])}"
+    if found["exit code"]:  # textures that outlive Blender's GPU crash it
+        yield f"the process ended with exit code {found['exit code']}"
 
 
 def child(frames, updates, ticked, output):
@@ -220,15 +222,15 @@ def child(frames, updates, ticked, output):
 
 
 def measure(frames, updates, ticked, folder):
-    """What a process of its own finds. CalledProcessError, with its output above, where it fails."""
+    """What a process of its own finds, and how it ends. CalledProcessError, with its output, where that is too soon."""
     output = Path(folder) / f"{'ticked' if ticked else 'unticked'}.json"
     command = [sys.executable, "-m", "benchmarks.soak", "--child", str(output), "--frames", str(frames),
                "--updates", str(updates), *([] if ticked else ["--unticked"])]
     run = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if run.returncode:
+    if not output.exists():
         print(run.stdout, file=sys.stderr)
         run.check_returncode()
-    return json.loads(output.read_text())
+    return {**json.loads(output.read_text()), "exit code": run.returncode}
 
 
 def page(ticked, unticked, command):

@@ -37,7 +37,7 @@ def clean():
     counts = count + UPDATES
     return {"memory": memory, "memory of updates": [1.2e9 + 1e4 * number for number in range(UPDATES)], "seconds": 60,
             "textures": [0] * counts, "descriptors": [7] * counts, "files": [1] * counts, "files left": [],
-            "left over": [], "images": [["Render Result"], ["Render Result"]]}
+            "left over": [], "images": [["Render Result"], ["Render Result"]], "exit code": 0}
 
 
 def test_no_fault_where_nothing_stays(clean):
@@ -62,6 +62,7 @@ def leak_in_updates(found):
     (lambda found: found["left over"].append("/cameras/Camera.001"), "/cameras/Camera.001"),
     (lambda found: found["images"][1].append("Render Result.001"), "Render Result.001"),
     (lambda found: found["descriptors"].__setitem__(-1, 8), "open files: 7, then 8"),
+    (lambda found: found.update({"exit code": -11}), "exit code -11"),
 ])
 def test_each_fault_shows(clean, leak, words):
     leak(clean)
