@@ -159,8 +159,8 @@ def test_german_has_every_text_and_no_other(addon):
 
 
 def test_words_are_said_in_the_language_of_the_interface(scene, addon, monkeypatch):
-    """Blender's module has no languages built in, its desktop has. Here: what is asked of it, and that the answer is
-    what is shown."""
+    """Blender's module has no languages built in, its desktop has (tests/desktop/test_interface.py). Here: what is
+    asked, and that the answer is what is shown."""
     tables = {}
     monkeypatch.setattr(addon.translations, "bpy", SimpleNamespace(app=SimpleNamespace(translations=SimpleNamespace(
         register=lambda name, table: tables.update(table)))))
