@@ -40,6 +40,9 @@ class AFTERLIGHT_MT_indirect_light(Menu):
 
     def draw(self, _context):
         layout = self.layout
+        layout.operator("afterlight.update", icon="FILE_REFRESH")
+        layout.operator("afterlight.free_passes")
+        layout.separator()
         layout.menu("AFTERLIGHT_MT_copy_settings")
         layout.operator("afterlight.reset", text="Reset Settings")
         layout.operator("afterlight.repair")
@@ -89,6 +92,9 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
         column = layout.column()
         column.active = settings.enabled
         column.prop(settings, "strength")
+        row = layout.row(align=True)
+        row.operator("afterlight.update", icon="FILE_REFRESH")
+        row.operator("afterlight.free_passes", icon="TRASH", text="")
 
 
 class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):

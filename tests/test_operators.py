@@ -91,7 +91,7 @@ def test_search_finds_what_the_menus_hold(scene, addon):
                 found.add(arguments[0])
     everything = {f"afterlight.{name}" for name in dir(bpy.ops.afterlight)}
     internal = {"afterlight.mend", "afterlight.preset_add"}  # with a button of their own beside what they are for
-    assert found >= everything - internal - {"afterlight.update", "afterlight.free_passes"}
+    assert found >= everything - internal
 
 
 def test_operators_say_why_they_are_grey(scene):
