@@ -178,7 +178,8 @@ def test_one_click_mends_it_and_undo_takes_it_back(scene, addon, spoil):
     assert found.cure and found.fatal == (spoil != probes)
     panel = drawn(addon.panel.AFTERLIGHT_PT_indirect_light)
     assert words(panel) == found.text
-    assert [(arguments[0], options["text"]) for kind, arguments, options, _ in panel if kind == "operator"] == [
+    assert [(arguments[0], options["text"]) for kind, arguments, options, _ in panel
+            if kind == "operator" and arguments[0] == "afterlight.mend"] == [
         ("afterlight.mend", addon.pipeline.cures.CURES[found.cure].button)]
     bpy.ops.ed.undo_push(message="spoiled")
     before = written_down()
