@@ -266,8 +266,8 @@ def page(ticked, unticked, command):
         "ticked and unticked, lit, lit again without EEVEE, cancelled, refused for ray tracing, and without a GPU. The",
         "other process renders the same with the box never ticked: what grows there is Blender's.", "",
         "In use is the memory that is resident when all that was freed has been given back, after the last frame of",
-        f"each time through the mix; resident the median of each time as it is. The first {WARM_UP} are warm-up. Growth",
-        "is that over all others, by the medians of their first and last third.", "",
+        f"each time through the mix; resident the median of each time as it is. The first {WARM_UP} are warm-up.",
+        "Growth is that over all others, by the medians of their first and last third.", "",
         "| process | minutes | MB in use after warm-up | at the end | growth | MB resident after warm-up | at the end "
         "| growth | textures alive after a frame | datablocks left | files left | open files more |", "|---" * 12 + "|",
         row("ticked", ticked), row("never ticked", unticked), "",
