@@ -116,7 +116,7 @@ class Window:
     # Mouse, keys and eyes
 
     def xdotool(self, *arguments):
-        self.computer.call("xdotool", *arguments)
+        return self.computer.call("xdotool", *arguments)
 
     def move(self, x, y):
         """The mouse to a place in the window, counted from the bottom left as Blender does."""
