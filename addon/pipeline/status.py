@@ -10,6 +10,7 @@ import sys
 import bpy
 
 from ..translations import say
+from . import turns
 
 _messages = {}
 _stages = {}
@@ -40,7 +41,7 @@ def fail(scene, text):
         return False
     _messages[scene.session_uid] = text
     if not bpy.app.background:
-        bpy.app.timers.register(lambda: _pop_up(text))
+        turns.later(lambda: bpy.app.timers.register(lambda: _pop_up(text)))
     return True
 
 
