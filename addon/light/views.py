@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The light between the surfaces of several views, in as many bounces as are asked for, from top to bottom.
+
+    depth maps of all views                  what each camera sees of any place
+    emitters, receivers                      blocks of every view's pixels, in world space
+    for each bounce but the last:            every view's receivers gather, and its emitters pass it on
+    the last one:                            the main view's base gathers; smooth, composite, read back
+
+A surface that several views show counts once, and what stands between two surfaces hides them from each other. The
+sizes below are for frames of any resolution: the cost of views and bounces is the same for all. docs/views.md has what
+decided them.
+"""
+
+import numpy as np
+
+from . import device
+from .inputs import Draws, View
+from .pipeline import Cancelled, composite, pack, stopwatch, upload
+
+DEPTHS_ACROSS = 320        # least texels across a depth map, and emitters across the main view
+EMITTER, RECEIVER = 2, 8   # texels of the depth map along the side of another view's emitters, of any view's receivers
+STEPS = 24                 # of the way to an emitter at which it is asked whether something stands there
+ENTRIES = 1 << 18          # of the table that emitters are drawn from
+BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
+BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
+ROWS_COST = 1 << 22        # candidates of one dispatch, so that no driver's watchdog fires
+
+
+def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, fraction: False,
+                 timings: dict[str, float] | None = None, broken: dict[str, int] | None = None) -> np.ndarray:
+    """The indirect light of the first view from the surfaces of all, after settings.bounces.
+
+    views: at most device.MOST_VIEWS, all of one resolution. Returns (H, W, 3) float32, bottom row first: the indirect
+    radiance to add to the picture, W sr^-1 m^-2; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as
+    gather_indirect() has them; broken speaks of the first view.
+    """
+    lap = stopwatch(timings)
+
+    def report(stage, fraction):
+        if progress(stage, fraction):
+            raise Cancelled
+
+    table = view_table(views, settings)
+    depths = device.texture(*table["depths"][:2] * (1, len(views)), "R32F")
+    report("views", 0.0)
+    channels = [upload(view.passes, broken if index == 0 else None) for index, view in enumerate(views)]
+    lap("upload", channels[-1]["emission_b"])
+    for index, view in enumerate(views):
+        device.dispatch("depths", camera_block(view, index), channels[index] | {"depths_out": depths},
+                        device.groups(*table["depths"][:2]), table)
+    emitters = records(views, channels, depths, table, "emitters")
+    receivers = records(views, channels, depths, table, "receivers")
+    base = pack(channels[0], views[0].passes, views[0].camera, settings)
+    channels = {name: texture for name, texture in channels[0].items() if name not in device.LIGHT_CHANNELS}
+    lap("views", receivers)
+
+    irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
+    clear(irradiance)
+    sent = radiate(emitters, irradiance, table)
+    for bounce in range(1, settings.bounces):
+        report("bounces", (bounce - 1) / settings.bounces)
+        draws = draw_table(sent, table, settings.seed + bounce)
+        table["draws"][:2] = BOUNCE_GROUPS, BOUNCE_CANDIDATES
+        draw("draw_blocks", settings.seed + bounce, table, irradiance, {
+            "receivers": receivers, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths})
+        sent = radiate(emitters, irradiance, table)
+    lap("bounces", sent)
+
+    draws = draw_table(sent, table, settings.seed)
+    table["draws"][:2] = settings.groups, settings.candidates
+    *_, width, height = base.boxes[0]
+    gathered = device.texture(width, height)
+    draw("draw_base", settings.seed, table, gathered, {
+        "surfels": base.surfels, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
+        base.parameters, lambda done: report("gather", done))
+    lap("gather", gathered)
+
+    report("upsample", 1.0)
+    total = device.texture(width, height)
+    device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": gathered, "total_out": total},
+                    device.groups(width, height))
+    indirect = composite(channels, base, total)
+    lap("upsample", indirect)
+    picture = device.read(indirect).reshape(views[0].passes.size[1], -1, 3)[:, :views[0].passes.size[0]]
+    lap("read_back")
+    return picture
+
+
+def view_table(views: list[View], settings: Draws) -> np.ndarray:
+    """A Views block: cameras, and which records are whose."""
+    width, height = views[0].passes.size
+    step = max(1, width // DEPTHS_ACROSS)
+    table, origin = np.zeros((), device.VIEWS), np.asarray(views[0].camera.position, float)
+    table["depths"] = -(-width // step), -(-height // step), step, len(views)
+    table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
+    first = {"emitters": 0, "receivers": 0}
+    for index, view in enumerate(views):
+        camera = view.camera
+        eye = np.asarray(camera.position, float) - origin
+        table["rotation"][index] = np.concatenate([camera.rotation, -(camera.rotation @ eye)[:, None]], axis=1)
+        table["projection"][index] = *(np.asarray(camera.scale) * step), *camera.offset
+        table["eye"][index] = *eye, camera.orthographic
+        for name, side in (("emitters", step * (EMITTER if index else 1)), ("receivers", step * RECEIVER)):
+            across, up = -(-width // side), -(-height // side)
+            table[name][index] = first[name], across, up, side
+            first[name] += across * up
+    return table
+
+
+def camera_block(view: View, index: int) -> np.ndarray:
+    """A Parameters block with the camera of one view, for passes that read its channels."""
+    camera = view.camera
+    return device.parameters(rotation=camera.rotation, projection=(*camera.scale, *camera.offset), span=(index,),
+                             frame=(*view.passes.size, 1, int(camera.orthographic)))
+
+
+def records(views, channels, depths, table, kind):
+    """The texture of all views' emitters or receivers; what its texels hold is in shaders/emit.glsl."""
+    made = device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind]))
+    for index, view in enumerate(views):
+        block = camera_block(view, index)
+        block["span"][1] = kind == "receivers"
+        device.dispatch("emit", block, channels[index] | {"depths": depths, "records_out": made},
+                        device.groups(*table[kind][index][1:3]), table)
+    return made
+
+
+def radiate(emitters, irradiance, table):
+    """(rows, RECORDS_WIDTH) texture: radiance and area of every emitter, given what the receivers have gathered."""
+    sent = device.texture(device.RECORDS_WIDTH, rows_of(table["emitters"]))
+    device.dispatch("radiate", device.parameters(), {
+        "emitters": emitters, "irradiance": irradiance, "radiance_out": sent}, device.groups(sent.width, sent.height), table)
+    return sent
+
+
+def draw_table(sent, table, seed):
+    """The table that emitters are drawn from, each as often as its share of all power and of all area; table["odds"] gets
+    the factors that give those shares."""
+    light = device.read(sent).reshape(-1, 4)[:count_of(table["emitters"])].astype(np.float64)
+    area = light[:, 3]
+    power = np.abs(light[:, :3].sum(-1))
+    whole, bright = area.sum(), (power * area).sum()
+    by_area = BY_AREA if bright > 0 else 1.0
+    table["odds"][:2] = (1 - by_area) / bright if bright > 0 else 0.0, by_area / whole if whole > 0 else 0.0
+    chances = np.cumsum((table["odds"][0] * power + table["odds"][1]) * area)
+    at = (np.arange(ENTRIES) + np.random.default_rng(seed & 0xFFFFFFFF).random(ENTRIES)) / ENTRIES * chances[-1]
+    numbers = np.minimum(np.searchsorted(chances, at), len(chances) - 1).astype(np.float32)
+    return device.texture(device.DRAWS_WIDTH, ENTRIES // device.DRAWS_WIDTH, "R32F", numbers)
+
+
+def draw(name, seed, table, target, textures, block=None, after_rows=lambda done: None):
+    """Gather into `target` by one of the passes "draw_...", some rows at a time."""
+    block = device.parameters() if block is None else block.copy()
+    block["band"][1] = device.as_int32(seed)
+    rows = max(1, ROWS_COST // int(target.width * table["draws"][0] * table["draws"][1]) // 8) * 8
+    for first in range(0, target.height, rows):
+        block["band"][0] = first
+        count = min(rows, target.height - first)
+        device.dispatch(name, block, textures | {"irradiance_out": target}, device.groups(target.width, count), table)
+        if first + count < target.height:
+            device.wait(target)
+            after_rows((first + count) / target.height)
+
+
+def clear(target):
+    """Zeros into a texture of RGBA32F."""
+    target.clear("FLOAT", (0.0, 0.0, 0.0, 0.0))
+
+
+def count_of(grids):
+    """Records of all views."""
+    first, across, up, _ = grids[np.argmax(grids[:, 0])]
+    return int(first + across * up)
+
+
+def rows_of(grids):
+    """Rows of RECORDS_WIDTH that they fill."""
+    return -(-count_of(grids) // device.RECORDS_WIDTH)
