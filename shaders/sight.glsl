@@ -2,7 +2,7 @@
 // Sight: what the depth maps of all views know of a place, and of the way between two.
 
 #define MARGIN 0.02           // of the way, at both ends
-#define FREE_TOLERANCE 1.01   // of a depth map's depth: so far behind it still counts as seen
+#define FREE_TOLERANCE 1.0005 // of the farthest depth in a texel: so far behind it still counts as seen
 
 // Planar depth of what the view shows there; 0 outside its frame and behind it.
 float depth_at(int view, vec3 projected)
@@ -25,7 +25,7 @@ bool is_blocked(vec3 from, vec3 to, float jitter)
       vec4 place = start + path * ((float(k) + jitter) / float(steps));
       ivec2 texel = ivec2(floor(place.xy / max(place.w, NEAREST)));
       bool inside = place.z > NEAREST && is_inside(texel, views.depths.xy);
-      float depth = texelFetch(depths, origin + clamp(texel, ivec2(0), views.depths.xy - 1), 0).r * FREE_TOLERANCE;
+      float depth = texelFetch(depths, origin + clamp(texel, ivec2(0), views.depths.xy - 1), 0).g * FREE_TOLERANCE;
       is_free |= uint(inside && place.z < depth) << k;
       is_behind |= uint(inside && place.z >= depth) << k;
     }

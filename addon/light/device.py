@@ -111,7 +111,7 @@ PASSES = {
     "upsample": Pass(("camera", "surfel", "bilateral", "upsample"), ("surfels", "irradiance"), "total_out"),
     "composite": Pass(("camera", "surfel", "bilateral", "composite"),
                       (*SURFACE_CHANNELS, *COLOR_CHANNELS, "surfels", "total"), "indirect_out", STRIP),
-    "depths": Pass(("camera", "views", "depths"), ("depth_pass",), "depths_out", format="R32F"),
+    "depths": Pass(("camera", "views", "depths"), SURFACE_CHANNELS, "depths_out", format="RG32F"),
     "emit": Pass(("camera", "views", "sight", "emit"), (*SURFACE_CHANNELS, *COLOR_CHANNELS, *LIGHT_CHANNELS, "depths"),
                  "records_out"),
     "radiate": Pass(("camera", "views", "radiate"), ("emitters", "irradiance"), "radiance_out"),

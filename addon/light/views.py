@@ -41,7 +41,7 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
             raise Cancelled
 
     table = view_table(views, settings)
-    depths = device.texture(*table["depths"][:2] * (1, len(views)), "R32F")
+    depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
     report("views", 0.0)
     channels = [upload(view.passes, broken if index == 0 else None) for index, view in enumerate(views)]
     lap("upload", channels[-1]["emission_b"])
