@@ -69,24 +69,25 @@ class Soak:
         files, before = sorted(os.listdir(bpy.app.tempdir)), self._state()
         for number in range(frames):
             self._frame(MIX[number % len(MIX)], number, folder)
-            self._look(found, "memory")
+            found["resident"].append(_resident())
+            self._look(found)
+            if number % len(MIX) == len(MIX) - 1:
+                found["in use"].append(_in_use())  # after the same frame each time
             if number + 1 in (len(MIX), frames):
                 found["images"].append(sorted(image.name for image in bpy.data.images))
         for number in range(updates):
             self.scene.afterlight.seed = number
             bpy.ops.afterlight.update()
-            # What EEVEE has freed is kept for the next that asks, and would hide a leak until it is full.
-            ctypes.CDLL(None).malloc_trim(0)
-            self._look(found, "memory of updates")
+            found["in use by updates"].append(_in_use())
+            self._look(found)
         self._prepare(*MIX[0][:5], "unticked")
         found["left over"] = self.scenes.differences(before, self._state())
         bpy.ops.preferences.addon_disable(module=self.afterlight.__package__.removesuffix(".addon"))
         found["files left"] = sorted(set(os.listdir(bpy.app.tempdir)) - set(files))
         return found
 
-    def _look(self, found, memory):
+    def _look(self, found):
         import bpy
-        found[memory].append(_resident())
         found["textures made"].append(len(self.textures))
         found["textures"].append(self._alive())
         found["descriptors"].append(len(os.listdir("/proc/self/fd")))
@@ -170,6 +171,13 @@ def _resident():
         return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
+def _in_use():
+    """The same without what was freed and lies ready for the next that asks: it comes and goes with EEVEE's frames, and
+    would hide a leak until it is full."""
+    ctypes.CDLL(None).malloc_trim(0)
+    return _resident()
+
+
 def rounds(memory):
     """The median of each time through the mix, whose frames differ in size."""
     return [statistics.median(memory[first:first + len(MIX)])
@@ -188,10 +196,10 @@ def growth(values):
 def faults(found):
     """What stays behind, a sentence each; empty where nothing does."""
     warm, last = slice(0, WARM_UP * len(MIX)), slice(-len(MIX), None)
-    settled = rounds(found["memory"])[WARM_UP:]
+    settled = found["in use"][WARM_UP:]
     if settled and growth(settled)[0] > MOST_GROWTH:
         yield f"memory grew by {growth(settled)[0]:.1%}"
-    if (updates := found.get("memory of updates")) and growth(updates)[1] > CHANNEL:
+    if (updates := found.get("in use by updates")) and growth(updates)[1] > CHANNEL:
         yield f"memory grew by {growth(updates)[1] / 1000:.0f} kB each time the light was updated"
     if any(found["textures"]):
         yield f"{max(found['textures'])} textures stayed alive after a frame"
@@ -242,32 +250,32 @@ def page(ticked, unticked, command):
         return f"{memory / 1e6:.0f}"
 
     def row(name, found):
-        settled = rounds(found["memory"])[WARM_UP:]
-        return (f"| {name} | {found['seconds'] / 60:.0f} | {megabytes(settled[0])} | {megabytes(settled[-1])} "
-                f"| {growth(settled)[0]:+.1%} | {max(found['textures'])} | {len(found['left over'])} "
-                f"| {len(found['files left'])} | {max(found['descriptors'][-len(MIX):]) - found['descriptors'][0]} |")
+        memory = [f"{megabytes(settled[0])} | {megabytes(settled[-1])} | {growth(settled)[0]:+.1%}"
+                  for settled in (found["in use"][WARM_UP:], rounds(found["resident"])[WARM_UP:])]
+        counts = (max(found["textures"]), len(found["left over"]), len(found["files left"]),
+                  max(found["descriptors"][-len(MIX):]) - found["descriptors"][0])
+        return f"| {name} | {found['seconds'] / 60:.0f} | {' | '.join(map(str, (*memory, *counts)))} |"
 
-    def series(found):
-        return ", ".join(map(megabytes, rounds(found["memory"])))
-
-    updates = ticked["memory of updates"]
-    found = list(faults(ticked))
+    updates = ticked["in use by updates"]
+    missed = list(faults(ticked))
     return "\n".join([
         "# Does anything stay behind?", "",
         f"Made by `{command}` (`make soak`) on software OpenGL, where the process's memory is the GPU's as well.", "",
-        f"{len(ticked['memory'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",
+        f"{len(ticked['resident'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",
         "[benchmarks/soak.py](../benchmarks/soak.py)). Sizes, settings, compositors, one view layer and two;",
         "ticked and unticked, lit, lit again without EEVEE, cancelled, refused for ray tracing, and without a GPU. The",
         "other process renders the same with the box never ticked: what grows there is Blender's.", "",
-        "Memory is what is resident after each frame, by the median of each time through the mix. The first",
-        f"{WARM_UP} are warm-up. Growth is that over all others, by the medians of their first and last third.", "",
-        "| process | minutes | MB after warm-up | MB at the end | growth | textures alive after a frame "
-        "| datablocks left | files left | open files more |", "|---|---|---|---|---|---|---|---|---|",
+        "In use is the memory that is resident when all that was freed has been given back, after the last frame of",
+        f"each time through the mix; resident the median of each time as it is. The first {WARM_UP} are warm-up.",
+        "Growth is that over all others, by the medians of their first and last third.", "",
+        "| process | minutes | MB in use after warm-up | at the end | growth | MB resident after warm-up | at the end "
+        "| growth | textures alive after a frame | datablocks left | files left | open files more |", "|---" * 12 + "|",
         row("ticked", ticked), row("never ticked", unticked), "",
-        f"MB, each time through the mix, ticked: {series(ticked)}", "", f"never ticked: {series(unticked)}", "",
+        *(f"MB in use, each time through the mix, {name}: {', '.join(map(megabytes, found['in use']))}\n"
+          for name, found in (("ticked", ticked), ("never ticked", unticked))),
         f"Then the light of the last frame is updated {len(updates)} times, without EEVEE and what its memory does:",
         f"{growth(updates)[1] / 1000:.1f} kB more with each. A channel of that frame is {CHANNEL / 1000:.0f} kB.", "",
-        *(f"**Missed:** {fault}." for fault in found), *([] if found else ["Nothing stays behind."]), ""])
+        *(f"**Missed:** {fault}." for fault in missed), *([] if missed else ["Nothing stays behind."]), ""])
 
 
 def main():
