@@ -133,7 +133,7 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
     preset_defines = ["settings = bpy.context.scene.afterlight"]
     # Strength and seed belong to the shot, not to the quality.
     preset_values = [f"settings.{parameter.name}" for parameter in PARAMETERS
-                     if parameter.name in {"start", "samples", "radius"}]
+                     if parameter.name not in {"strength", "seed", "use_animated_seed"}]
 
 
 def other_scenes(scene):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the gather is given: a camera, EEVEE's passes and the settings. Plain numpy, no GPU."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -72,10 +73,16 @@ class Passes:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture of the scene that sends light, and the camera that saw it."""
+    """A picture of the scene that sends light, and the camera that saw it. source: its Passes, or a function that loads
+    them: each is needed only for a moment, and they are large."""
 
-    passes: Passes
+    source: Passes | Callable[[], Passes]
     camera: Camera
+
+    @property
+    def passes(self) -> Passes:
+        """The passes, loaded again each time where they have to be."""
+        return self.source() if callable(self.source) else self.source
 
 
 @dataclass(frozen=True)

@@ -46,11 +46,13 @@ class Pyramid:
         return across * up
 
 
-def upload(passes: Passes, broken: dict[str, int] | None = None) -> dict[str, Texture]:
+def upload(passes: Passes, broken: dict[str, int] | None = None, light: bool = True) -> dict[str, Texture]:
     """One texture a channel, named as the shaders name them, with four neighbouring pixels of a row in each texel; rows
-    are filled up with background. broken: filled with Passes.broken()."""
-    groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal), device.COLOR_CHANNELS: passes.diffuse_color,
-              device.LIGHT_CHANNELS: (*passes.diffuse_direct, *passes.emission)}
+    are filled up with background. broken: filled with Passes.broken(). light: or only depth and normal."""
+    groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal)}
+    if light:
+        groups |= {device.COLOR_CHANNELS: passes.diffuse_color,
+                   device.LIGHT_CHANNELS: (*passes.diffuse_direct, *passes.emission)}
     width, height = passes.size
     quads = -(-width // 4)
     plane = np.zeros((height, 4 * quads), np.float32)  # one for all: new memory for each takes longer than the copy

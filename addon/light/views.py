@@ -14,7 +14,7 @@ decided them.
 import numpy as np
 
 from . import device
-from .inputs import Draws, View
+from .inputs import Camera, Draws, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
 DEPTHS_ACROSS = 320        # least texels across a depth map, and emitters across the main view
@@ -23,6 +23,7 @@ STEPS = 24                 # of the way to an emitter at which it is asked wheth
 ENTRIES = 1 << 18          # of the table that emitters are drawn from
 BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
 BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
+KINDS = "emitters", "receivers"
 ROWS_COST = 1 << 22        # candidates of one dispatch, so that no driver's watchdog fires
 
 
@@ -40,19 +41,24 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
         if progress(stage, fraction):
             raise Cancelled
 
-    table = view_table(views, settings)
+    passes = views[0].passes
+    width, height = passes.size
+    table = view_table(views, passes.size, settings)
     depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
-    report("views", 0.0)
-    channels = [upload(view.passes, broken if index == 0 else None) for index, view in enumerate(views)]
-    lap("upload", channels[-1]["emission_b"])
     for index, view in enumerate(views):
-        device.dispatch("depths", camera_block(view, index), channels[index] | {"depths_out": depths},
+        report("views", index / len(views) / 2)
+        channels = upload(passes if index == 0 else view.passes, light=False)
+        device.dispatch("depths", camera_block(view, index, passes.size), channels | {"depths_out": depths},
                         device.groups(*table["depths"][:2]), table)
-    emitters = records(views, channels, depths, table, "emitters")
-    receivers = records(views, channels, depths, table, "receivers")
-    base = pack(channels[0], views[0].passes, views[0].camera, settings)
-    channels = {name: texture for name, texture in channels[0].items() if name not in device.LIGHT_CHANNELS}
-    lap("views", receivers)
+    emitters, receivers = (device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS)
+    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
+        report("views", 1 - (index + 1) / len(views) / 2)
+        channels = upload(passes if index == 0 else views[index].passes, None if index else broken)
+        emit(views[index], index, passes.size, channels, depths, table, dict(zip(KINDS, (emitters, receivers))))
+        lap("views", receivers)
+    base = pack(channels, passes, views[0].camera, settings)
+    for name in device.LIGHT_CHANNELS:
+        del channels[name]
 
     irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
     clear(irradiance)
@@ -68,61 +74,59 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
 
     draws = draw_table(sent, table, settings.seed)
     table["draws"][:2] = settings.groups, settings.candidates
-    *_, width, height = base.boxes[0]
-    gathered = device.texture(width, height)
+    *_, across, up = base.boxes[0]
+    gathered = device.texture(across, up)
     draw("draw_base", settings.seed, table, gathered, {
         "surfels": base.surfels, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
         base.parameters, lambda done: report("gather", done))
     lap("gather", gathered)
 
     report("upsample", 1.0)
-    total = device.texture(width, height)
+    total = device.texture(across, up)
     device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": gathered, "total_out": total},
-                    device.groups(width, height))
+                    device.groups(across, up))
     indirect = composite(channels, base, total)
     lap("upsample", indirect)
-    picture = device.read(indirect).reshape(views[0].passes.size[1], -1, 3)[:, :views[0].passes.size[0]]
+    picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
     lap("read_back")
     return picture
 
 
-def view_table(views: list[View], settings: Draws) -> np.ndarray:
-    """A Views block: cameras, and which records are whose."""
-    width, height = views[0].passes.size
+def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
+    """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
+    width, height = size
     step = max(1, width // DEPTHS_ACROSS)
     table, origin = np.zeros((), device.VIEWS), np.asarray(views[0].camera.position, float)
     table["depths"] = -(-width // step), -(-height // step), step, len(views)
     table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
-    first = {"emitters": 0, "receivers": 0}
+    first = dict.fromkeys(KINDS, 0)
     for index, view in enumerate(views):
         camera = view.camera
         eye = np.asarray(camera.position, float) - origin
         table["rotation"][index] = np.concatenate([camera.rotation, -(camera.rotation @ eye)[:, None]], axis=1)
         table["projection"][index] = *(np.asarray(camera.scale) * step), *camera.offset
         table["eye"][index] = *eye, camera.orthographic
-        for name, side in (("emitters", step * (EMITTER if index else 1)), ("receivers", step * RECEIVER)):
+        for name, side in zip(KINDS, (step * (EMITTER if index else 1), step * RECEIVER)):
             across, up = -(-width // side), -(-height // side)
             table[name][index] = first[name], across, up, side
             first[name] += across * up
     return table
 
 
-def camera_block(view: View, index: int) -> np.ndarray:
+def camera_block(view: View, index: int, size: tuple[int, int]) -> np.ndarray:
     """A Parameters block with the camera of one view, for passes that read its channels."""
     camera = view.camera
     return device.parameters(rotation=camera.rotation, projection=(*camera.scale, *camera.offset), span=(index,),
-                             frame=(*view.passes.size, 1, int(camera.orthographic)))
+                             frame=(*size, 1, int(camera.orthographic)))
 
 
-def records(views, channels, depths, table, kind):
-    """The texture of all views' emitters or receivers; what its texels hold is in shaders/emit.glsl."""
-    made = device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind]))
-    for index, view in enumerate(views):
-        block = camera_block(view, index)
+def emit(view, index, size, channels, depths, table, targets):
+    """Fill in one view's emitters and receivers; what their texels hold is in shaders/emit.glsl."""
+    for kind, target in targets.items():
+        block = camera_block(view, index, size)
         block["span"][1] = kind == "receivers"
-        device.dispatch("emit", block, channels[index] | {"depths": depths, "records_out": made},
+        device.dispatch("emit", block, channels | {"depths": depths, "records_out": target},
                         device.groups(*table[kind][index][1:3]), table)
-    return made
 
 
 def radiate(emitters, irradiance, table):
@@ -165,6 +169,20 @@ def draw(name, seed, table, target, textures, block=None, after_rows=lambda done
 def clear(target):
     """Zeros into a texture of RGBA32F."""
     target.clear("FLOAT", (0.0, 0.0, 0.0, 0.0))
+
+
+def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
+    """As memory.gpu_bytes()."""
+    cameras = [View(None, Camera(np.eye(3), np.ones(2), np.zeros(2)))] * (1 + further)
+    table = view_table(cameras, (width, height), settings)
+    depths = 8 * int(table["depths"][0] * table["depths"][1]) * len(cameras)
+    emitters, receivers = (device.RECORDS_WIDTH * rows_of(table[kind]) for kind in KINDS)
+    base = -(-width // settings.start) * -(-height // settings.start)
+    kept = depths + 64 * (emitters + receivers)
+    channel = -(-width // 4) * height * 16
+    bouncing = 16 * (base + receivers + 2 * emitters) + 4 * ENTRIES + 7 * channel
+    finishing = 16 * (3 * base + receivers + emitters) + 4 * ENTRIES + 10 * channel
+    return kept + max(13 * channel + 16 * base, bouncing, finishing)
 
 
 def count_of(grids):

@@ -146,13 +146,18 @@ class AfterlightEngine(bpy.types.RenderEngine):
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file
         frame = passes.load(path, shot.layer, shot.window)
-        further = [(view.load(), view.camera) for view in (shot.again.views if shot.again else self.views)]
-        shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings), "passes file": os.path.getsize(path)}
+        further = [light.View(view.load, view.camera) for view in (shot.again.views if shot.again else self.views)]
+        shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings, len(further)),
+                       "passes file": os.path.getsize(path)}
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
-        picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed,
-                                        broken=broken)
+        if isinstance(shot.settings, light.Draws):
+            picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings,
+                                         progress=self._progress, timings=timed, broken=broken)
+        else:
+            picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed,
+                                            broken=broken)
         for name, count in broken.items():
             self.report({"WARNING"}, say(
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "

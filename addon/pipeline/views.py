@@ -44,7 +44,7 @@ _rendered = None           # session_uid of the scene that is being rendered
 def wanted(scene):
     """How many views `scene` may need in a frame."""
     settings = scene.afterlight
-    if not settings.enabled or settings.views == "CAMERA":
+    if not settings.enabled or settings.views == "CAMERA" or settings.method == "PAPER":
         return 0
     return settings.view_count if settings.views == "AUTOMATIC" else min(len(settings.view_cameras), MOST)
 
