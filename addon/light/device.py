@@ -168,11 +168,11 @@ def shader(name: str) -> gpu.types.GPUShader:
     """The compiled pass, kept until release(). Raises GpuUnavailable where it does not compile."""
     made_of = PASSES[name]
     info = gpu.types.GPUShaderCreateInfo()
-    info.typedef_source(PARAMETERS_GLSL)
+    # One call: a second would put its text in place of the first's.
+    info.typedef_source(PARAMETERS_GLSL + VIEWS_GLSL * made_of.knows_views)
     info.uniform_buf(0, "Parameters", "parameters")
     info.define("OFFSETS_WIDTH", str(TABLE_WIDTH))
     if made_of.knows_views:
-        info.typedef_source(VIEWS_GLSL)
         info.uniform_buf(1, "Views", "views")
         info.define("RECORDS_WIDTH", str(RECORDS_WIDTH))
         info.define("DRAWS_WIDTH", str(DRAWS_WIDTH))
