@@ -118,7 +118,7 @@ class Texture:
     def __del__(self):
         self.own.release()
 
-    def clear(self, format, value):
+    def clear(self, *, format, value):
         components, kind = FORMATS[self.format]
         self.own.write(np.full((self.height, self.width, components), value[:components], kind).tobytes())
 
@@ -144,7 +144,7 @@ class CreateInfo:
         self.blocks, self.samplers, self.images = {}, {}, {}
 
     def typedef_source(self, text):
-        self.types += text
+        self.types = text  # Blender keeps the last
 
     def define(self, name, value=""):
         self.defines += f"#define {name} {value}\n"

@@ -18,14 +18,16 @@ void main()
   if (is_surface(depth)) {
     vec3 world = vec3(texelFetch(normal_x, source, 0)[pixel.x & 3], texelFetch(normal_y, source, 0)[pixel.x & 3],
                       texelFetch(normal_z, source, 0)[pixel.x & 3]);
-    vec3 normal = to_view(parameters.span.x, world) - to_view(parameters.span.x, vec3(0.0));
+    vec3 normal = turn_to_view(parameters.span.x, world);
     vec3 ray = vec3(view_ray(vec2(pixel) + 0.5), -1.0);
     for (int corner = 0; corner < 4; corner++) {
       vec2 end = view_ray(vec2((texel + ivec2(corner & 1, corner >> 1)) * step));
       // The plane through this pixel's place, at the texel's corner.
       float reach = is_orthographic() ? depth + dot(normal.xy, end - ray.xy) / normal.z :
                                         depth * dot(normal, ray) / dot(normal, vec3(end, -1.0));
-      farthest = max(farthest, is_finite(reach) && reach < STEEPEST * depth && reach > 0.0 ? reach : farthest);
+      // Below 0 where the plane passes behind the camera before it gets there.
+      bool known = is_finite(reach) && dot(world, world) > 0.0;
+      farthest = max(farthest, known ? (reach > 0.0 ? min(reach, STEEPEST * depth) : STEEPEST * depth) : depth);
     }
   } else {
     depth = farthest = 2.0 * FARTHEST;

@@ -35,7 +35,7 @@ void main()
         vec4 second = texelFetch(emitters, record_texel(number, 1, 4), 0);
         vec4 sent = texelFetch(radiance, record_texel(number, 0, 1), 0);
         float form = form_factor(place, normal, first.xyz, first.a, second.xyz, second.a);
-        float power = abs(sent.r + sent.g + sent.b);
+        float power = abs(sent.r) + abs(sent.g) + abs(sent.b);
         float odds = (views.odds.x * power + views.odds.y) * first.a;
         if (form <= 0.0 || power == 0.0) {
           continue;

@@ -63,10 +63,15 @@ void main()
       vec3 radiance = vec3(PASS_PIXEL(direct_r), PASS_PIXEL(direct_g), PASS_PIXEL(direct_b)) * color +
                       vec3(PASS_PIXEL(emission_r), PASS_PIXEL(emission_g), PASS_PIXEL(emission_b));
       float square = dot(facing, facing);
-      if (!is_surface(depth) || square == 0.0 || !is_finite(square + radiance.x + radiance.y + radiance.z)) {
+      if (!is_surface(depth) || !is_finite(square + radiance.x + radiance.y + radiance.z)) {
         continue;
       }
       vec2 centre = vec2(pixel) + 0.5;
+#ifdef GEOMETRIC_NORMALS
+      if (square == 0.0) {
+        facing = to_world(view, geometric_normal(pixel, depth));
+      }
+#endif
       facing = direction(facing);
       vec3 world = to_world(view, view_place(centre, depth)) + views.eye[view].xyz;
       float shown = shown_area(view, world, facing, depth);

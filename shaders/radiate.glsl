@@ -19,5 +19,9 @@ void main()
   vec3 irradiance = texelFetch(irradiance, record_texel(receivers.x + receiver.y * receivers.y + receiver.x, 0, 1), 0).rgb;
   vec3 radiance = texelFetch(emitters, record_texel(number, 2, 4), 0).rgb +
                   texelFetch(emitters, record_texel(number, 3, 4), 0).rgb * irradiance / PI;
+  // One pixel of absurd brightness must not cost the picture.
+  if (!is_finite(abs(radiance.r) + abs(radiance.g) + abs(radiance.b))) {
+    radiance = vec3(0.0);
+  }
   imageStore(radiance_out, at, vec4(radiance, texelFetch(emitters, record_texel(number, 0, 4), 0).a));
 }

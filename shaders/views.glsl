@@ -10,6 +10,13 @@ vec3 to_view(int view, vec3 place)
   return vec3(dot(views.rotation[3 * view], p), dot(views.rotation[3 * view + 1], p), dot(views.rotation[3 * view + 2], p));
 }
 
+// Of a direction, which has no place.
+vec3 turn_to_view(int view, vec3 direction)
+{
+  return vec3(dot(views.rotation[3 * view].xyz, direction), dot(views.rotation[3 * view + 1].xyz, direction),
+              dot(views.rotation[3 * view + 2].xyz, direction));
+}
+
 vec3 to_world(int view, vec3 direction)
 {
   return direction.x * views.rotation[3 * view].xyz + direction.y * views.rotation[3 * view + 1].xyz +

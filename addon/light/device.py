@@ -114,6 +114,8 @@ PASSES = {
     "depths": Pass(("camera", "views", "depths"), SURFACE_CHANNELS, "depths_out", format="RG32F"),
     "emit": Pass(("camera", "views", "sight", "emit"), (*SURFACE_CHANNELS, *COLOR_CHANNELS, *LIGHT_CHANNELS, "depths"),
                  "records_out"),
+    "emit_with_normals": Pass(("camera", "views", "sight", "geometric", "emit"),
+                              (*SURFACE_CHANNELS, *COLOR_CHANNELS, *LIGHT_CHANNELS, "depths"), "records_out"),
     "radiate": Pass(("camera", "views", "radiate"), ("emitters", "irradiance"), "radiance_out"),
     "draw_blocks": Pass(("camera", "views", "sight", "random", "receiver_block", "draw"),
                         ("receivers", "emitters", "radiance", "table", "depths"), "irradiance_out"),

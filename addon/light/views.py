@@ -17,7 +17,7 @@ from . import device
 from .inputs import Camera, Draws, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
-DEPTHS_ACROSS = 320        # least texels across a depth map, and emitters across the main view
+DEPTHS_ACROSS = 320        # least texels along a depth map's longer side, and emitters along the main view's
 EMITTER, RECEIVER = 2, 8   # texels of the depth map along the side of another view's emitters, of any view's receivers
 STEPS = 24                 # of the way to an emitter at which it is asked whether something stands there
 ENTRIES = 1 << 18          # of the table that emitters are drawn from
@@ -53,15 +53,17 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
     emitters, receivers = (device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS)
     for index in reversed(range(len(views))):  # the main one last: its channels are needed again
         report("views", 1 - (index + 1) / len(views) / 2)
-        channels = upload(passes if index == 0 else views[index].passes, None if index else broken)
-        emit(views[index], index, passes.size, channels, depths, table, dict(zip(KINDS, (emitters, receivers))))
+        shown = passes if index == 0 else views[index].passes
+        channels = upload(shown, None if index else broken)
+        name = "emit_with_normals" if shown.lacks_normals() else "emit"
+        emit(name, views[index], index, passes.size, channels, depths, table, dict(zip(KINDS, (emitters, receivers))))
         lap("views", receivers)
     base = pack(channels, passes, views[0].camera, settings)
     for name in device.LIGHT_CHANNELS:
         del channels[name]
 
     irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
-    clear(irradiance)
+    irradiance.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
     sent = radiate(emitters, irradiance, table)
     for bounce in range(1, settings.bounces):
         report("bounces", (bounce - 1) / settings.bounces)
@@ -95,7 +97,7 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
 def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
     """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
     width, height = size
-    step = max(1, width // DEPTHS_ACROSS)
+    step = max(1, max(size) // DEPTHS_ACROSS)
     table, origin = np.zeros((), device.VIEWS), np.asarray(views[0].camera.position, float)
     table["depths"] = -(-width // step), -(-height // step), step, len(views)
     table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
@@ -120,12 +122,12 @@ def camera_block(view: View, index: int, size: tuple[int, int]) -> np.ndarray:
                              frame=(*size, 1, int(camera.orthographic)))
 
 
-def emit(view, index, size, channels, depths, table, targets):
+def emit(name, view, index, size, channels, depths, table, targets):
     """Fill in one view's emitters and receivers; what their texels hold is in shaders/emit.glsl."""
     for kind, target in targets.items():
         block = camera_block(view, index, size)
         block["span"][1] = kind == "receivers"
-        device.dispatch("emit", block, channels | {"depths": depths, "records_out": target},
+        device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
                         device.groups(*table[kind][index][1:3]), table)
 
 
@@ -142,7 +144,7 @@ def draw_table(sent, table, seed):
     the factors that give those shares."""
     light = device.read(sent).reshape(-1, 4)[:count_of(table["emitters"])].astype(np.float64)
     area = light[:, 3]
-    power = np.abs(light[:, :3].sum(-1))
+    power = np.abs(light[:, :3]).sum(-1)
     whole, bright = area.sum(), (power * area).sum()
     by_area = BY_AREA if bright > 0 else 1.0
     table["odds"][:2] = (1 - by_area) / bright if bright > 0 else 0.0, by_area / whole if whole > 0 else 0.0
@@ -164,11 +166,6 @@ def draw(name, seed, table, target, textures, block=None, after_rows=lambda done
         if first + count < target.height:
             device.wait(target)
             after_rows((first + count) / target.height)
-
-
-def clear(target):
-    """Zeros into a texture of RGBA32F."""
-    target.clear("FLOAT", (0.0, 0.0, 0.0, 0.0))
 
 
 def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
