@@ -36,14 +36,8 @@ class Stages:
 
 
 def stages(light, views, chosen):
-    made, device = light.views, light.device
-    table = made.view_table(views, chosen)
-    depths = device.texture(*table["depths"][:2] * (1, len(views)), device.PASSES["depths"].format)
-    channels = [light.upload(view.passes) for view in views]
-    for index, view in enumerate(views):
-        device.dispatch("depths", made.camera_block(view, index), channels[index] | {"depths_out": depths},
-                        device.groups(*table["depths"][:2]), table)
-    emitters, receivers = (made.records(views, channels, depths, table, kind) for kind in ("emitters", "receivers"))
+    table = light.views.view_table(views, views[0].passes.size, chosen)
+    depths, emitters, receivers, _ = light.views.look(views, views[0].passes, table)
     return Stages(table, depths, emitters, receivers, views_64.eyes_of(views, int(table["depths"][2])))
 
 
@@ -56,7 +50,7 @@ def sent_by(light, staged, irradiance=None):
     """What emitters send when receivers have gathered `irradiance`, a texture, or nothing."""
     if irradiance is None:
         irradiance = light.device.texture(light.device.RECORDS_WIDTH, light.views.rows_of(staged.table["receivers"]))
-        light.views.clear(irradiance)
+        irradiance.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
     return light.views.radiate(staged.emitters, irradiance, staged.table)
 
 

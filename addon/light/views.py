@@ -44,20 +44,8 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
     passes = views[0].passes
     width, height = passes.size
     table = view_table(views, passes.size, settings)
-    depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
-    for index, view in enumerate(views):
-        report("views", index / len(views) / 2)
-        channels = upload(passes if index == 0 else view.passes, light=False)
-        device.dispatch("depths", camera_block(view, index, passes.size), channels | {"depths_out": depths},
-                        device.groups(*table["depths"][:2]), table)
-    emitters, receivers = (device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS)
-    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
-        report("views", 1 - (index + 1) / len(views) / 2)
-        shown = passes if index == 0 else views[index].passes
-        channels = upload(shown, None if index else broken)
-        name = "emit_with_normals" if shown.lacks_normals() else "emit"
-        emit(name, views[index], index, passes.size, channels, depths, table, dict(zip(KINDS, (emitters, receivers))))
-        lap("views", receivers)
+    depths, emitters, receivers, channels = look(views, passes, table, report, broken)
+    lap("views", receivers)
     base = pack(channels, passes, views[0].camera, settings)
     for name in device.LIGHT_CHANNELS:
         del channels[name]
@@ -94,6 +82,29 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
     return picture
 
 
+def look(views, passes, table, report=lambda stage, fraction: None, broken=None):
+    """(depth maps, emitters, receivers, channels of the main view) of all views; passes: the main one's."""
+    size = passes.size
+    depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
+    for index, view in enumerate(views):
+        report("views", index / len(views) / 2)
+        channels = upload(view.passes if index else passes, light=False)
+        device.dispatch("depths", camera_block(view, index, size), channels | {"depths_out": depths},
+                        device.groups(*table["depths"][:2]), table)
+    targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
+    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
+        report("views", 1 - (index + 1) / len(views) / 2)
+        shown = views[index].passes if index else passes
+        channels = upload(shown, None if index else broken)
+        name = "emit_with_normals" if shown.lacks_normals() else "emit"
+        for kind, target in targets.items():
+            block = camera_block(views[index], index, size)
+            block["span"][1] = kind == "receivers"
+            device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
+                            device.groups(*table[kind][index][1:3]), table)
+    return depths, *targets.values(), channels
+
+
 def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
     """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
     width, height = size
@@ -120,15 +131,6 @@ def camera_block(view: View, index: int, size: tuple[int, int]) -> np.ndarray:
     camera = view.camera
     return device.parameters(rotation=camera.rotation, projection=(*camera.scale, *camera.offset), span=(index,),
                              frame=(*size, 1, int(camera.orthographic)))
-
-
-def emit(name, view, index, size, channels, depths, table, targets):
-    """Fill in one view's emitters and receivers; what their texels hold is in shaders/emit.glsl."""
-    for kind, target in targets.items():
-        block = camera_block(view, index, size)
-        block["span"][1] = kind == "receivers"
-        device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
-                        device.groups(*table[kind][index][1:3]), table)
 
 
 def radiate(emitters, irradiance, table):
