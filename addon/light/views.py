@@ -11,6 +11,8 @@ sizes below are for frames of any resolution: the cost of views and bounces is t
 decided them.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from . import device
@@ -44,6 +46,7 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
     passes = views[0].passes
     width, height = passes.size
     table = view_table(views, passes.size, settings)
+    settings = replace(settings, start=start_of(settings, passes.size))
     depths, emitters, receivers, channels = look(views, passes, table, report, broken)
     lap("views", receivers)
     base = pack(channels, passes, views[0].camera, settings)
@@ -105,10 +108,20 @@ def look(views, passes, table, report=lambda stage, fraction: None, broken=None)
     return depths, *targets.values(), channels
 
 
+def start_of(settings, size):
+    """Pixels along a base texel: those asked for, but no coarser than the depth maps. Small pictures cost little enough."""
+    return max(start for start in (1, 2, 4) if start <= min(settings.start, step_of(size)))
+
+
+def step_of(size):
+    """Pixels along a texel of a depth map."""
+    return max(1, max(size) // DEPTHS_ACROSS)
+
+
 def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
     """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
     width, height = size
-    step = max(1, max(size) // DEPTHS_ACROSS)
+    step = step_of(size)
     table, origin = np.zeros((), device.VIEWS), np.asarray(views[0].camera.position, float)
     table["depths"] = -(-width // step), -(-height // step), step, len(views)
     table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
@@ -176,7 +189,8 @@ def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
     table = view_table(cameras, (width, height), settings)
     depths = 8 * int(table["depths"][0] * table["depths"][1]) * len(cameras)
     emitters, receivers = (device.RECORDS_WIDTH * rows_of(table[kind]) for kind in KINDS)
-    base = -(-width // settings.start) * -(-height // settings.start)
+    start = start_of(settings, (width, height))
+    base = -(-width // start) * -(-height // start)
     kept = depths + 64 * (emitters + receivers)
     channel = -(-width // 4) * height * 16
     bouncing = 16 * (base + receivers + 2 * emitters) + 4 * ENTRIES + 7 * channel
