@@ -170,6 +170,8 @@ def written_down():
 
 
 def _struct(thing, depth):
+    if thing is None:  # an empty place, as an image's layers have in a window
+        return None
     found = {}
     for prop in thing.bl_rna.properties:
         key = prop.identifier

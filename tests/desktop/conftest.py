@@ -22,11 +22,15 @@ def package():
     return extension.package()
 
 
+@pytest.fixture(scope="session")
+def empty_folder():
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    return FOLDER
+
+
 @pytest.fixture(scope="session", params=["opengl", "vulkan"])
-def computer(request):
-    folder = FOLDER / request.param
-    shutil.rmtree(folder, ignore_errors=True)
-    return Computer(folder, request.param)
+def computer(request, empty_folder):
+    return Computer(empty_folder / request.param, request.param)
 
 
 @pytest.fixture(scope="session")

@@ -19,7 +19,10 @@ connection.setblocking(False)
 waiting = b""
 names = {"bpy": bpy}   # the globals of all that is sent
 events = []            # (name of Blender's handler, seconds, frame), as they happen
-TICK = 0.01
+spans = []             # [what of the extension runs, begin, end], by watch()
+ticks = []             # when the main thread came round to tick()
+ticking = False
+TICK = 0.01            # seconds
 
 
 def listen():
@@ -87,6 +90,58 @@ def rendering():
 def happened(name):
     """How often a handler has been called."""
     return sum(event[0] == name for event in events)
+
+
+def remember():
+    """Write down all that the file holds, for changed()."""
+    import scenes
+    names["remembered"] = scenes.written_down()
+
+
+def changed():
+    """What in the file differs from when remember() was called, a line each."""
+    import scenes
+    return scenes.differences(names["remembered"], scenes.written_down())
+
+
+def watch(span, *path):
+    """From now on, note when a function of the extension begins and ends, as `span` in `spans`. path: of its module in the
+    extension, then the names that lead to it."""
+    import importlib
+    owner = importlib.import_module(f"bl_ext.user_default.afterlight.addon.{path[0]}")
+    for name in path[1:-1]:
+        owner = getattr(owner, name)
+    function = getattr(owner, path[-1])
+
+    def watched(*arguments, **options):
+        row = [span, time.perf_counter(), None]
+        spans.append(row)
+        try:
+            return function(*arguments, **options)
+        finally:
+            row[2] = time.perf_counter()
+    setattr(owner, path[-1], watched)
+
+
+def running():
+    """The spans that are under way."""
+    return [span for span, _, end in spans if end is None]
+
+
+def tick():
+    ticks.append(time.perf_counter())
+    return TICK if ticking else None
+
+
+def count_ticks(on):
+    """Begin to note when the main thread comes round to us, or stop and return (spans, ticks)."""
+    global ticking
+    ticking = names["ticking"] = on
+    if on:
+        spans.clear()
+        ticks.clear()
+        bpy.app.timers.register(tick)
+    return spans, ticks
 
 
 def save_result(path, scene_name=""):

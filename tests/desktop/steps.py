@@ -49,10 +49,10 @@ def open_file(path):
     bpy.ops.wm.open_mainfile(filepath=path)
 
 
-def result(window, name):
+def result(window, name, scene=""):
     """(H, W, 3) of the last finished render, scene-linear."""
     path = window.computer.folder / f"{name}.exr"
-    window.value(f"save_result({str(path)!r})")
+    window.value(f"save_result({str(path)!r}, {scene!r})")
     return read_rgb(path)
 
 

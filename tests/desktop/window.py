@@ -34,7 +34,7 @@ class Computer:
         options["env"] = self.environment | options.pop("env", {})
         return subprocess.Popen(["chroot", os.environ["AFTERLIGHT_DESKTOP"], *map(str, command)], **options)
 
-    def call(self, *command, timeout=30, **options):
+    def call(self, *command, timeout=120, **options):
         """Run to the end and return the output; AssertionError with it where the command fails."""
         process = self.start(*command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
         try:
@@ -44,7 +44,7 @@ class Computer:
         assert process.returncode == 0, f"{command} ended with {process.returncode}:\n{output}"
         return output
 
-    def headless(self, *arguments, timeout=180):
+    def headless(self, *arguments, timeout=300):
         """`blender -b` with these arguments; its output, which must hold no traceback."""
         output = self.call("blender", "-b", "--gpu-backend", self.backend, *arguments, timeout=timeout)
         assert "Traceback" not in output, output
@@ -68,7 +68,7 @@ class Window:
                     "AFTERLIGHT_CONTROL": str(theirs.fileno()),
                     "AFTERLIGHT_TESTS": os.pathsep.join(map(str, [HERE.parent, ROOT / "tools"]))})
         self.socket, self.received = ours, b""
-        self.value("bpy.app.version_string", timeout=120)
+        self.value("bpy.app.version_string")
 
     def _start_screen(self):
         number, theirs = os.pipe()
@@ -81,11 +81,11 @@ class Window:
 
     # Python in the window's Blender
 
-    def value(self, expression, timeout=30):
+    def value(self, expression, timeout=120):
         """Of an expression, in Blender's main thread."""
         return self._ask({"expression": expression}, timeout)
 
-    def run(self, function, *arguments, timeout=60):
+    def run(self, function, *arguments, timeout=120):
         """Call a function of a test inside Blender; it sees `bpy` and what inside.py holds, and nothing else. What it is
         given and returns must fit into JSON."""
         source = textwrap.dedent(inspect.getsource(function))
@@ -106,7 +106,7 @@ class Window:
         assert "error" not in reply, reply["error"]
         return reply["value"]
 
-    def wait(self, expression, timeout=60):
+    def wait(self, expression, timeout=180):
         """Until an expression is true in Blender."""
         end = time.monotonic() + timeout
         while not self.value(expression, timeout):
@@ -170,11 +170,14 @@ class Window:
     def finished_renders(self):
         return self.value("happened('render_complete')")
 
-    def render(self, timeout=120):
-        """F12, and wait for the picture."""
-        before = self.finished_renders()
+    def start_render(self):
         self.over("VIEW_3D")
         self.key("F12")
+
+    def render(self, timeout=180):
+        """F12, and wait for the picture."""
+        before = self.finished_renders()
+        self.start_render()
         self.wait(f"happened('render_complete') > {before} and not rendering()", timeout)
 
     def close(self):

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a timer.
+
+    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [opengl] [vulkan] [WIDTHxHEIGHT ...]"""
+
+import shutil
+import sys
+import time
+
+import extension
+import steps
+from window import ROOT, Computer, Window
+
+# What is watched in the extension, from the outside in: a stall belongs to the innermost that runs.
+WATCHED = {
+    "save passes": ("pipeline.passes", "save"),
+    "load passes": ("pipeline.passes", "load"),
+    "upload": ("light.pipeline", "upload"),
+    "pack": ("light.pipeline", "pack"),
+    "merge": ("light.pipeline", "merge"),
+    "gather": ("light.pipeline", "gather"),
+    "wait": ("light.device", "wait"),
+    "compile": ("light.device", "shader"),
+    "upsample": ("light.pipeline", "upsample"),
+    "composite": ("light.pipeline", "composite"),
+    "read back": ("light.device", "read"),
+    "hand back": ("pipeline.engine", "AfterlightEngine", "_hand_back"),
+}
+
+
+def prepare(width, height):
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.eevee.taa_render_samples = 1
+    scene.afterlight.start, scene.afterlight.samples, scene.afterlight.radius = "FULL", 1024, 32
+
+
+def stage_at(moment, spans, begin, end):
+    inside = [span for span in spans if span[1] <= moment <= span[2]]
+    if inside:
+        return max(inside, key=lambda span: span[1])[0]
+    first = min((span[1] for span in spans), default=end)
+    return "idle" if not begin <= moment <= end else "EEVEE" if moment < first else "between, compositor"
+
+
+def stalls(window):
+    """{stage: (longest gap, seconds in all)} of one render by F12."""
+    before = window.finished_renders()
+    window.over("VIEW_3D")
+    time.sleep(1)
+    window.value("count_ticks(True) and None")
+    window.key("F12")
+    window.wait(f"happened('render_complete') > {before} and not rendering()", 600)
+    time.sleep(0.5)
+    spans, ticks = window.value("count_ticks(False)")
+    times = window.value("[event[:2] for event in events]")
+    begin = [moment for name, moment in times if name == "render_init"][-1]
+    end = [moment for name, moment in times if name == "render_complete"][-1]
+    spans = [span for span in spans if span[2]]
+    found = {}
+    for earlier, later in zip(ticks, ticks[1:]):
+        # A gap belongs to the stage that had most of it.
+        shares = {}
+        pieces = 50
+        for piece in range(pieces):
+            stage = stage_at(earlier + (later - earlier) * (piece + 0.5) / pieces, spans, begin, end)
+            shares[stage] = shares.get(stage, 0) + 1
+        stage = max(shares, key=shares.get)
+        longest, total = found.get(stage, (0, 0))
+        found[stage] = max(longest, later - earlier), total
+    for span in spans:
+        longest, total = found.get(span[0], (0, 0))
+        found[span[0]] = longest, total + span[2] - span[1]
+    return found
+
+
+def main():
+    backends = [word for word in sys.argv[1:] if word in ("opengl", "vulkan")] or ["opengl", "vulkan"]
+    sizes = [tuple(map(int, word.split("x"))) for word in sys.argv[1:] if word[0].isdigit()] or [(640, 360), (1280, 720)]
+    for backend in backends:
+        folder = ROOT / "build" / "stalls" / backend
+        shutil.rmtree(folder, ignore_errors=True)
+        window = Window(Computer(folder, backend))
+        try:
+            steps.install(window, extension.package())
+            steps.new_box(window)
+            steps.tick(window)
+            for name, path in WATCHED.items():
+                window.value(f"watch({name!r}, *{path!r})")
+            for width, height in sizes:
+                window.run(prepare, width, height)
+                for run in ("first", "second"):
+                    print(f"\n{backend}, {width} x {height}, {run} render: longest stall, seconds in the stage")
+                    for stage, (longest, total) in stalls(window).items():
+                        print(f"  {stage:20} {longest:7.3f} {total:8.3f}", flush=True)
+        finally:
+            window.close()
+
+
+if __name__ == "__main__":
+    main()
