@@ -4,11 +4,11 @@
 from dataclasses import dataclass, field
 
 import bpy
-from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, IntVectorProperty, PointerProperty,
+from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, IntVectorProperty, PointerProperty,
                        StringProperty)
 
 from . import light
-from .pipeline import status, wiring
+from .pipeline import status, views, wiring
 
 
 VERSION = 0, 2, 0          # the manifest's; what older ones stored otherwise: migration.py
@@ -29,6 +29,14 @@ class Parameter:
         return self.kind(name=self.label, description=self.tooltip, **self.options)
 
 
+def _rewire(settings, _context):
+    """The number of views has changed."""
+    scene = settings.id_data
+    if settings.enabled and scene.library is None:
+        wiring.connect(scene)
+
+
+DEFAULT_VIEWS = "CAMERA"
 START = {"FULL": 1, "HALF": 2, "QUARTER": 4}
 
 PARAMETERS = (
@@ -57,6 +65,18 @@ PARAMETERS = (
         "sum over all pixels, but the same samples are spread over more texels and the light gets noisier. Time "
         "depends on the samples far more than on this",
         {"default": 16, "min": 2, "max": 64, "soft_min": 4, "soft_max": 32, "subtype": "PIXEL"}),
+    Parameter(
+        "views", EnumProperty, "Views",
+        "Which cameras see the surfaces that send light. What no view sees sends none. Each further view is one sample of "
+        "EEVEE",
+        {"default": DEFAULT_VIEWS, "options": set(), "update": _rewire, "items": (
+            ("CAMERA", "Camera Only", "Only the picture itself: the fastest, without light from outside it", 0),
+            ("AUTOMATIC", "Automatic", "Views are placed in every shot where they see most of what is missing", 1),
+            ("MANUAL", "Manual", "The cameras that you list", 2))}),
+    Parameter(
+        "view_count", IntProperty, "Views at Most",
+        "How many views are placed at most. Fewer are placed where a further one would see little that is new",
+        {"default": 7, "min": 1, "max": views.MOST, "options": set(), "update": _rewire}),
     Parameter(
         "seed", IntProperty, "Seed",
         "Pattern of the random samples. The same seed gives the same picture, bit for bit. Costs nothing. Without "
@@ -106,6 +126,22 @@ def _switch(settings, _context):
         (wiring.connect if settings.enabled else wiring.disconnect)(scene)
 
 
+def _listed(view, context):
+    _rewire(view.id_data.afterlight, context)
+
+
+class AfterlightView(bpy.types.PropertyGroup):
+    """A camera that the user lists as a view."""
+
+    camera: PointerProperty(
+        type=bpy.types.Object, name="Camera", update=_listed, poll=lambda _view, thing: thing.type == "CAMERA",
+        description="A camera that sees surfaces which light the picture. The place of a lamp is a good one")
+
+
+class AfterlightViewScene(bpy.types.PropertyGroup):
+    scene: PointerProperty(type=bpy.types.Scene)
+
+
 class AfterlightSettings(bpy.types.PropertyGroup):
     """`scene.afterlight`. What the user sets is in PARAMETERS; the rest is what the wiring must remember."""
 
@@ -123,6 +159,9 @@ class AfterlightSettings(bpy.types.PropertyGroup):
     helper: PointerProperty(
         type=bpy.types.Scene, options={"HIDDEN"},
         description="The scene through which Blender calls Afterlight while it renders this one")
+    view_cameras: CollectionProperty(type=AfterlightView, name="Cameras", description="The views, where they are manual")
+    view_camera: IntProperty(name="Active Camera", options={"HIDDEN"})
+    view_scenes: CollectionProperty(type=AfterlightViewScene, options={"HIDDEN"})
     own_tree: PointerProperty(
         type=bpy.types.NodeTree, options={"HIDDEN"},
         description="The compositor tree Afterlight made where the scene had none in use")
@@ -136,11 +175,15 @@ AfterlightSettings.__annotations__.update(
     (parameter.name, parameter.blender_property()) for parameter in PARAMETERS)
 
 
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (AfterlightView, AfterlightViewScene, AfterlightSettings))
+
+
 def register():
-    bpy.utils.register_class(AfterlightSettings)
+    _register_classes()
     bpy.types.Scene.afterlight = PointerProperty(type=AfterlightSettings)
 
 
 def unregister():
     del bpy.types.Scene.afterlight
-    bpy.utils.unregister_class(AfterlightSettings)
+    _unregister_classes()

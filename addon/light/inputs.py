@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the gather is given: a camera, EEVEE's passes and the settings. Plain numpy, no GPU."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -19,13 +19,14 @@ class Camera:
     at planar depth z (metres, above 0) is (q.x z, q.y z, -z) in perspective and (q.x, q.y, -z) in orthographic.
 
     rotation: (3, 3) float64, world to view. scale, offset: (2,) float64, in view units at depth 1 (perspective) or
-    metres (orthographic).
+    metres (orthographic). position: (3,) float64, in the world, metres.
     """
 
     rotation: np.ndarray
     scale: np.ndarray
     offset: np.ndarray
     orthographic: bool = False
+    position: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass(eq=False)

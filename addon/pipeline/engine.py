@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, passes, relight, status, wiring
+from . import checks, passes, relight, status, views, wiring
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -33,6 +33,7 @@ class Shot:
     again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
     camera: light.Camera = None
     settings: light.Settings = None
+    views: list = field(default_factory=list)  # [views.Saved]
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
@@ -49,6 +50,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
 
     idle = False  # render nothing: handlers.py has a use for an empty render
     shot = None
+    views = ()  # what views.save() gave for the frame
     file = ""  # the saved passes of the frame, between its first view layer and its last
 
     def update_render_passes(self, scene, layer):
@@ -88,7 +90,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
         try:
             if shot.problem:
                 raise Problem("{}", shot.problem)
-            picture = self._gather(shot)
+            picture = self._gather(shot, depsgraph)
         except light.Cancelled:
             pass
         except (Problem, light.GpuUnavailable) as problem:
@@ -110,10 +112,11 @@ class AfterlightEngine(bpy.types.RenderEngine):
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
-            relight.keep(self.shot.scene, self.file, self.shot.camera)
+            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views)
         elif self.file:
-            passes.discard(self.file)
-        self.file = ""
+            for path in (self.file, *(view.path for view in self.views)):
+                passes.discard(path)
+        self.file, self.views = "", ()
 
     def _look(self, depsgraph, source):
         """light.Camera of the frame. `source`'s camera is evaluated through our own depsgraph, with nothing else of
@@ -132,16 +135,18 @@ class AfterlightEngine(bpy.types.RenderEngine):
         finally:
             helper.camera = own
 
-    def _gather(self, shot):
+    def _gather(self, shot, depsgraph):
         start = time.perf_counter()
         if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
             self._progress("Saving passes", 0.0)
             relight.forget(shot.scene.session_uid)
             self.file = passes.save(shot.scene)
+            self.views = views.save(shot.scene, depsgraph)
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file
         frame = passes.load(path, shot.layer, shot.window)
+        further = [(view.load(), view.camera) for view in (shot.again.views if shot.again else self.views)]
         shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings), "passes file": os.path.getsize(path)}
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()

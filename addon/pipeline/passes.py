@@ -148,19 +148,28 @@ def camera(evaluated, depsgraph, scene):
 
     From Blender's own projection matrix, so that lens, sensor fit, shift and pixel aspect are all in it.
     """
-    (x, y, _, _), (width, height) = window(scene)
-    projection = np.array(evaluated.calc_matrix_camera(
-        depsgraph, x=width, y=height, scale_x=scene.render.pixel_aspect_x, scale_y=scene.render.pixel_aspect_y))
-    orthographic = evaluated.data.type == "ORTHO"
+    (x, y, _, _), full = window(scene)
+    aspect = scene.render.pixel_aspect_x, scene.render.pixel_aspect_y
+    return camera_at(evaluated.matrix_world, evaluated, depsgraph, (x, y), full, aspect)
+
+
+def camera_at(matrix, lens, depsgraph, corner, full, aspect):
+    """light.Camera at `matrix` with the lens of the camera object `lens`, for the part of a frame of `full` pixels (width,
+    height) that begins at `corner`."""
+    (x, y), (width, height) = corner, full
+    projection = np.array(lens.calc_matrix_camera(
+        depsgraph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1]))
+    orthographic = lens.data.type == "ORTHO"
     # ndc = (P00 q + P02 * -1) / 1 in perspective, P00 q + P03 in orthographic; ndc = 2 pixel / size - 1.
     shift = -projection[:2, 3] if orthographic else projection[:2, 2]
     focus = projection[(0, 1), (0, 1)]
     size = np.array([width, height], float)
-    axes = np.array(evaluated.matrix_world.to_3x3())
+    axes = np.array(matrix.to_3x3())
     to_world = axes / np.linalg.norm(axes, axis=0)  # Blender renders as if a scaled camera were not
     return light.Camera(
         rotation=np.linalg.inv(to_world), scale=2 / size / focus,
-        offset=(2 * np.array([x, y]) / size - 1 + shift) / focus, orthographic=orthographic)
+        offset=(2 * np.array([x, y]) / size - 1 + shift) / focus, orthographic=orthographic,
+        position=np.array(matrix.translation, float))
 
 
 def _mapped(path, header):

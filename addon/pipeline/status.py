@@ -12,6 +12,7 @@ import bpy
 from ..translations import say
 
 _messages = {}
+_warnings = {}
 _stages = {}
 _memory = {}
 _failed = False
@@ -30,6 +31,7 @@ class Problem(Exception):
 def begin(scene):
     """Forget what the render before had to say."""
     _messages.pop(scene.session_uid, None)
+    _warnings.pop(scene.session_uid, None)
 
 
 def fail(scene, text):
@@ -42,6 +44,20 @@ def fail(scene, text):
     if not bpy.app.background:
         bpy.app.timers.register(lambda: _pop_up(text))
     return True
+
+
+def warn(scene, text):
+    """Remember what the last render of `scene` had to do without, though it was lit. Returns whether that is news."""
+    known = _warnings.setdefault(scene.session_uid, [])
+    if text in known:
+        return False
+    known.append(text)
+    return True
+
+
+def warnings(scene):
+    """What warn() has been told since the last render began."""
+    return _warnings.get(scene.session_uid, [])
 
 
 def message(scene):
@@ -111,5 +127,6 @@ def unregister():
     if not _failed:
         atexit.unregister(_exit_code)
     _messages.clear()
+    _warnings.clear()
     _stages.clear()
     _memory.clear()
