@@ -29,7 +29,7 @@ def seen(views, monkeypatch):
 
     def spy(saved):
         loaded = load(saved)
-        cut = views.passes.read(saved.path, (0, 0, *saved.size))
+        cut = views.passes.read(saved.path, saved.window)
         found.append((loaded, saved.camera, np.stack([cut(f"{saved.layer}.Position.{axis}") for axis in "XYZ"], -1)))
         return loaded
 
@@ -72,3 +72,25 @@ def test_manual_views_are_where_their_cameras_say(scene, views, seen, tmp_path):
         hit = passes.depth < 1e9
         assert hit.mean() > 0.5
         assert np.abs(positions(passes, camera) - place)[hit].max() < 1e-3
+
+
+@pytest.mark.parametrize("crop", [False, True])
+def test_a_render_border_leaves_views_whole(scene, views, seen, tmp_path, crop):
+    scene.afterlight.enabled = True
+    camera = side_camera()
+    camera.data.angle = np.radians(90)
+    by_hand(scene, camera)
+    views.scenes(scene)[0].view_layers[0].use_pass_position = True
+    scene.render.use_border, scene.render.use_crop_to_border = True, crop
+    scene.render.border_min_x, scene.render.border_max_x = 0.5, 0.75
+    scene.render.border_min_y, scene.render.border_max_y = 0.25, 1
+    scene.render.pixel_aspect_x = 1.5
+    render(scene, tmp_path / "lit.exr")
+    assert scene.afterlight.report == ""
+    (passes, camera, place), = seen
+    assert passes.size == (16, 27)
+    hit = passes.depth < 1e9
+    assert np.abs(positions(passes, camera) - place)[hit].max() < 1e-3
+    width, height = passes.size
+    corners = camera.offset, camera.offset + camera.scale * (width, height)
+    assert np.allclose(corners, [(-16 / 27, -1), (16 / 27, 1)], atol=1e-5)  # 90 degrees along the longer side

@@ -42,7 +42,7 @@ class AfterlightScout(bpy.types.RenderEngine):
                     self._warn(scene, problem)
                     continue
                 evaluated = each.camera.evaluated_get(depsgraph)
-                views.pose(view, evaluated.matrix_world, evaluated)
+                views.pose(view, scene, evaluated.matrix_world, views.lens_of(evaluated, depsgraph, scene))
 
     def _warn(self, scene, text):
         if status.warn(scene, text):

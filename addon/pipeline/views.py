@@ -142,23 +142,51 @@ def is_rendered(scene):
     return scene.session_uid == _rendered
 
 
-def pose(view, matrix, source=None, clip=None):
-    """Let a view scene be rendered in this frame, through a camera at `matrix` (4 x 4, world) with the lens of the
-    evaluated camera `source`, or with the lens of automatic views, which see from clip[0] to clip[1]."""
-    camera, lens = view.camera, view.camera.data
+@dataclass(frozen=True)
+class Lens:
+    """What a view sees. pixel: the size of one, at depth 1 (perspective) or in metres (orthographic). centre: (x, y), where
+    the optical axis meets the view, in pixels from the view's middle. near, far: metres."""
+
+    pixel: float
+    near: float
+    far: float
+    centre: tuple = (0.0, 0.0)
+    orthographic: bool = False
+
+
+def lens_of(source, depsgraph, scene):
+    """Lens of an evaluated camera of the user's, as if the view were its whole frame."""
+    width, height = passes.window(scene)[0][2:]
+    seen = passes.camera_at(source.matrix_world, source, depsgraph, (0, 0), (width, height), (1.0, 1.0))
+    axis = -seen.offset / seen.scale - (width / 2, height / 2)
+    return Lens(seen.scale[0], source.data.clip_start, source.data.clip_end, tuple(axis), seen.orthographic)
+
+
+def wide_lens(scene, near, far):
+    """Lens of an automatic view."""
+    return Lens(2 * np.tan(FIELD / 2) / max(passes.window(scene)[0][2:]), near, far)
+
+
+def pose(view, scene, matrix, lens):
+    """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
+
+    Blender renders it at the scene's resolution and, where that has one, within its render border. The camera is made so
+    that this border holds the whole view."""
+    camera, data = view.camera, view.camera.data
     place, rotation, _ = Matrix(matrix).decompose()
-    _assign(camera, "rotation_mode", "QUATERNION")
-    _assign(camera, "location", place)
-    _assign(camera, "rotation_quaternion", rotation)
-    if source is None:
-        values = {"type": "PERSP", "sensor_fit": "AUTO", "sensor_width": 36.0, "shift_x": 0.0, "shift_y": 0.0,
-                  "lens": 18 / np.tan(FIELD / 2), "clip_start": clip[0], "clip_end": clip[1]}
-    else:
-        values = {name: getattr(source.data, name) for name in (
-            "type", "sensor_fit", "sensor_width", "sensor_height", "shift_x", "shift_y", "lens", "ortho_scale",
-            "clip_start", "clip_end")}
+    (x, y, width, height), full = passes.window(scene)
+    longer = max(full)
+    values = {"type": "ORTHO" if lens.orthographic else "PERSP", "sensor_fit": "AUTO", "lens": 500.0,
+              "sensor_width": 500.0 * lens.pixel * longer, "ortho_scale": lens.pixel * longer,
+              "shift_x": (full[0] / 2 - x - width / 2 - lens.centre[0]) / longer,
+              "shift_y": (full[1] / 2 - y - height / 2 - lens.centre[1]) / longer,
+              "clip_start": lens.near, "clip_end": lens.far}
     for name, value in values.items():
-        _assign(lens, name, value)
+        _assign(data, name, value)
+    for name, value in (("rotation_mode", "QUATERNION"), ("location", place), ("rotation_quaternion", rotation)):
+        _assign(camera, name, value)
+    _assign(view.render, "use_border", scene.render.use_border)
+    _assign(view.render, "use_crop_to_border", scene.render.use_crop_to_border)
     _assign(view.view_layers[0], "use", True)
 
 
@@ -178,27 +206,28 @@ def camera(view, depsgraph, scene):
     """light.Camera of a view that is rendered together with `scene`. Its pose is what pose() set: nothing animates
     it, so that no depsgraph need have heard of it."""
     place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
-    (_, _, width, height), _ = passes.window(scene)
-    return passes.camera_at(place, view.camera, depsgraph, (0, 0), (width, height), (1.0, 1.0))
+    (x, y, _, _), full = passes.window(scene)
+    return passes.camera_at(place, view.camera, depsgraph, (x, y), full, (1.0, 1.0))
 
 
 @dataclass(frozen=True, eq=False)
 class Saved:
-    """A view of a finished frame. path: a file that passes.save() wrote. layer, size: its view layer and (width, height)."""
+    """A view of a finished frame. path: a file that passes.save() wrote. layer: its view layer. window: as passes.window()
+    gave it."""
 
     path: str
     layer: str
-    size: tuple
+    window: tuple
     camera: light.Camera
 
     def load(self):
         """light.Passes of the view. Raises status.Problem."""
-        return passes.load(self.path, self.layer, (0, 0, *self.size))
+        return passes.load(self.path, self.layer, self.window)
 
 
 def save(scene, depsgraph):
     """[Saved] of the views that were rendered for this frame of `scene`. Raises status.Problem."""
-    return [Saved(passes.save(view), view.view_layers[0].name, passes.window(scene)[0][2:],
+    return [Saved(passes.save(view), view.view_layers[0].name, passes.window(scene)[0],
                   camera(view, depsgraph, scene)) for view in posed(scene)]
 
 
