@@ -172,6 +172,30 @@ def camera_at(matrix, lens, depsgraph, corner, full, aspect):
         position=np.array(matrix.translation, float))
 
 
+def positions(frame, seen, flat):
+    """(N, 3) float64, in the world: where the pixels of light.Passes with these flat indices lie, through light.Camera."""
+    width, height = frame.size
+    row, column = np.divmod(flat, width)
+    ray = seen.offset + seen.scale * np.stack([column + 0.5, height - row - 0.5], axis=-1)
+    depth = frame.depth[row, column].astype(float)[:, None]
+    local = np.concatenate([ray * (1 if seen.orthographic else depth), -depth], axis=1)
+    return local @ seen.rotation + seen.position  # the inverse of the rotation is its transpose
+
+
+def project(places, frame, seen):
+    """(rows, columns, depths) of world positions (N, 3) in light.Passes through light.Camera; rows and columns are -1 where a
+    position is not in the frame."""
+    width, height = frame.size
+    local = (places - seen.position) @ seen.rotation.T
+    depth = -local[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ray = local[:, :2] if seen.orthographic else local[:, :2] / depth[:, None]
+    column, up = np.nan_to_num((ray - seen.offset) / seen.scale, nan=-1.0, posinf=-1.0, neginf=-1.0).T
+    inside = (depth > 0) & (column >= 0) & (column < width) & (up >= 0) & (up < height)
+    row = np.where(inside, height - 1 - np.floor(up).clip(0, height - 1), -1).astype(int)
+    return row, np.where(inside, np.floor(column), -1).astype(int), depth
+
+
 def _mapped(path, header):
     """{channel: (H, W) float32, rows top first} in the file's own memory, or None where it is not laid out as save()
     asks for it: OpenEXR must then read it, or say what is wrong with it.

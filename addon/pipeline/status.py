@@ -13,6 +13,7 @@ from ..translations import say
 
 _messages = {}
 _warnings = {}
+_coverage = {}
 _stages = {}
 _memory = {}
 _failed = False
@@ -58,6 +59,16 @@ def warn(scene, text):
 def warnings(scene):
     """What warn() has been told since the last render began."""
     return _warnings.get(scene.session_uid, [])
+
+
+def covered(scene, shares, seconds):
+    """Keep what the last placement of views gave: the share of the light that the main view sees, and with each view."""
+    _coverage[scene.session_uid] = shares, seconds
+
+
+def coverage(scene):
+    """(shares, seconds) as covered() was told, or None."""
+    return _coverage.get(scene.session_uid)
 
 
 def message(scene):
@@ -128,5 +139,6 @@ def unregister():
         atexit.unregister(_exit_code)
     _messages.clear()
     _warnings.clear()
+    _coverage.clear()
     _stages.clear()
     _memory.clear()

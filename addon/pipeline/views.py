@@ -19,12 +19,13 @@ from mathutils import Matrix
 
 from .. import light
 from ..translations import say
-from . import nodes, passes
+from . import nodes, passes, placement
 from .nodes import MARK
 
 SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
 SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
 MOST = 9
+PLACED = "placed"          # custom property of the scout's scene
 FIELD = radians(100)       # of an automatic view, along the longer side of the frame
 SAMPLES = 1                # EEVEE's; the pixels are averaged down afterwards
 
@@ -167,6 +168,12 @@ def wide_lens(scene, near, far):
     return Lens(2 * np.tan(FIELD / 2) / max(passes.window(scene)[0][2:]), near, far)
 
 
+def half_field(scene):
+    """Tangents of half the field of an automatic view, across and up."""
+    size = np.array(passes.window(scene)[0][2:])
+    return np.tan(FIELD / 2) * size / size.max()
+
+
 def pose(view, scene, matrix, lens):
     """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
 
@@ -188,6 +195,21 @@ def pose(view, scene, matrix, lens):
     _assign(view.render, "use_border", scene.render.use_border)
     _assign(view.render, "use_crop_to_border", scene.render.use_crop_to_border)
     _assign(view.view_layers[0], "use", True)
+
+
+def placed(scene):
+    """The placement.Placement that the file holds for `scene`, or None."""
+    stored = scout(scene).get(PLACED)
+    if not stored or len(stored["poses"]) % 16:
+        return None
+    return placement.Placement(list(np.array(stored["poses"], float).reshape(-1, 4, 4)), list(stored["coverage"]),
+                               stored["clearance"])
+
+
+def keep_placed(scene, found):
+    """Store a placement in the file: the frames to come begin with it."""
+    scout(scene)[PLACED] = {"poses": np.array(found.poses, float).ravel().tolist(), "coverage": list(found.coverage),
+                            "clearance": found.clearance}
 
 
 def drop(view):
