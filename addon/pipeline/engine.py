@@ -109,6 +109,10 @@ class AfterlightEngine(bpy.types.RenderEngine):
         if status.fail(scene, text):
             self.report({"ERROR"}, f"Afterlight: {text}")
 
+    def _warn(self, scene, text):
+        if status.warn(scene, text):
+            self.report({"WARNING"}, f"Afterlight: {text}")
+
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
@@ -138,10 +142,11 @@ class AfterlightEngine(bpy.types.RenderEngine):
     def _gather(self, shot, depsgraph):
         start = time.perf_counter()
         if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
-            self._progress("Saving passes", 0.0)
+            if self._progress("Saving passes", 0.0):
+                raise light.Cancelled
             relight.forget(shot.scene.session_uid)
             self.file = passes.save(shot.scene)
-            self.views = views.save(shot.scene, depsgraph)
+            self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file

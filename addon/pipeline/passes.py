@@ -182,10 +182,10 @@ def positions(frame, seen, flat):
     return local @ seen.rotation + seen.position  # the inverse of the rotation is its transpose
 
 
-def project(places, frame, seen):
-    """(rows, columns, depths) of world positions (N, 3) in light.Passes through light.Camera; rows and columns are -1 where a
-    position is not in the frame."""
-    width, height = frame.size
+def project(places, size, seen):
+    """(rows, columns, depths) of world positions (N, 3) in a frame of `size` (width, height) seen through light.Camera; rows and
+    columns are -1 where a position is not in the frame."""
+    width, height = size
     local = (places - seen.position) @ seen.rotation.T
     depth = -local[:, 2]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -104,7 +104,7 @@ def place(light, seen, cast, half, most, rng, kept=()):
     return Placement(poses, coverage, CLEARANCE * light.size)
 
 
-def coverage(light, seen, cast, half, poses):
+def covered(light, seen, cast, half, poses):
     """The share of weight that the main view and those at `poses` see together."""
     for pose in poses:
         seen = seen | sees(pose, half, light, visible(pose[:3, 3], light, cast))
@@ -123,13 +123,13 @@ def looking(position, direction):
 
 
 def visible(position, light, cast):
-    """(N,) bool: what can be seen from a place, in any direction."""
+    """(N,) bool: what can be seen from a place, in any direction. position: (3,), or (N, 3), one for each."""
     to = light.places - position
     far = np.linalg.norm(to, axis=1)
     far = np.where(far > 0, far, 1.0)
     found = (np.sum(to * light.normals, 1) < 0) & (far > 1e-4 * light.size)
     to, limit = to[found] / far[found, None], far[found] * (1 - 3e-3) - 1e-4 * light.size
-    distance, _, _ = cast(np.broadcast_to(position, to.shape), to, limit, nearest=False)
+    distance, _, _ = cast(np.broadcast_to(position, light.places.shape)[found], to, limit, nearest=False)
     found[found] = ~np.isfinite(distance)
     return found
 

@@ -8,9 +8,9 @@ import traceback
 import bpy
 import numpy as np
 
-from .. import light
 from ..translations import say
-from . import checks, materials, passes, placement, rays, relight, status, views, wiring
+from . import checks, passes, placement, rays, relight, status, views, wiring
+from .picture import Picture
 from .status import Problem
 
 
@@ -41,93 +41,75 @@ class AfterlightScout(bpy.types.RenderEngine):
                                   "report them", error))
 
     def _place(self, scene, depsgraph):
-        if scene.afterlight.views == "AUTOMATIC":
-            self._automatic(scene, depsgraph)
+        start = time.perf_counter()
+        camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+        by_hand = scene.afterlight.views == "MANUAL"
+        if by_hand:
+            self._pose_by_hand(scene, depsgraph)
+        geometry = rays.Geometry(depsgraph)
+        picture, rng = Picture(scene, camera), np.random.default_rng(scene.afterlight.seed)
+        found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng)
+        if found is None:
+            if not by_hand:
+                self._warn(scene, say("No views were placed: no surface lights what the camera sees"))
             return
+        seen, _, _ = picture.sees(found.places, found.normals)
+        if by_hand:
+            shares = self._score(scene, depsgraph, found, seen, geometry.cast)
+        else:
+            shares = self._choose(scene, depsgraph, found, seen, geometry.cast, rng)
+        status.covered(scene, shares, time.perf_counter() - start)
+
+    def _pose_by_hand(self, scene, depsgraph):
         for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
             if problem := views.unusable(each.camera):
                 self._warn(scene, problem)
-                continue
-            evaluated = each.camera.evaluated_get(depsgraph)
-            views.pose(view, scene, evaluated.matrix_world, views.lens_of(evaluated, depsgraph, scene))
+            else:
+                evaluated = each.camera.evaluated_get(depsgraph)
+                views.pose(view, scene, evaluated.matrix_world, views.lens_of(evaluated, depsgraph, scene))
 
-    def _automatic(self, scene, depsgraph):
-        start = time.perf_counter()
-        camera = scene.camera.evaluated_get(depsgraph)
-        picture = Picture(scene, passes.camera(camera, depsgraph, scene))
-        geometry = rays.Geometry(depsgraph)
-        rng = np.random.default_rng(scene.afterlight.seed)
-        found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng)
-        if found is None:
-            self._warn(scene, say("No views were placed: what the camera sees gets no light from any surface"))
-            return
-        seen, _, _ = picture.sees(found.places, found.normals)
+    def _score(self, scene, depsgraph, found, seen, cast):
+        """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left out."""
+        shares = [float(found.weights @ seen)]
+        for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
+            if not view.view_layers[0].use:
+                continue
+            camera = views.camera(view, depsgraph, scene)
+            frame = passes.window(scene)[0][2:]
+            row, _, depth = passes.project(found.places, frame, camera)
+            eye = camera.position
+            if camera.orthographic:
+                eye = found.places + np.outer(depth, camera.rotation[2])
+            saw = placement.visible(eye, found, cast) & (row >= 0)
+            if not saw.any():
+                self._warn(scene, say('The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
+                                      "a wall, or look away. Move it, or remove it from the list", each.camera.name))
+                views.drop(view)
+                continue
+            seen = seen | saw
+            shares.append(float(found.weights @ seen))
+        return shares
+
+    def _choose(self, scene, depsgraph, found, seen, cast, rng):
+        """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
         half, most = views.half_field(scene), scene.afterlight.view_count
         known = views.placed(scene)
-        if known is not None and len(known.poses) <= most:
-            covered = placement.coverage(found, seen, geometry.cast, half, known.poses)
-            if covered < known.coverage[-1] - placement.FALL:
-                known = None
-        else:
-            known = None
-        if known is None:
-            old = views.placed(scene)
-            known = placement.place(found, seen, geometry.cast, half, most, rng, old.poses if old else ())
+        old = known.poses if known else []
+        if known is None or len(old) > most or (
+                placement.covered(found, seen, cast, half, old) < known.coverage[-1] - placement.FALL):
+            known = placement.place(found, seen, cast, half, most, rng, old)
             views.keep_placed(scene, known)
-            if len(known.poses) == 0 and known.coverage[0] < 0.9:
-                self._warn(scene, say("No views were placed: there is no free place for one"))
-        lens = views.wide_lens(scene, known.clearance / 4, max(camera.data.clip_end, 100 * found.size))
+            if not known.poses and known.coverage[0] < 1 - placement.FALL:
+                self._warn(scene, say("No views were placed: there is no free place that shows more than the camera does"))
+        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * found.size)
+        lens = views.wide_lens(scene, known.clearance / 4, far)
         for view, pose in zip(views.scenes(scene), known.poses):
             views.pose(view, scene, pose, lens)
-        status.covered(scene, known.coverage, time.perf_counter() - start)
+        return known.coverage
 
     def _warn(self, scene, text):
         if status.warn(scene, text):
             self.report({"WARNING"}, f"Afterlight: {text}")
-
-
-class Picture:
-    """The main view as EEVEE has just finished it, by the first view layer that is rendered."""
-
-    def __init__(self, scene, camera):
-        layer = next(layer for layer in scene.view_layers if layer.use)
-        path = passes.file_path(scene)
-        relight.forget(scene.session_uid)  # its file is written again
-        self._frame = passes.load(passes.save(scene), layer.name, passes.window(scene)[0])
-        passes.discard(path)
-        self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
-
-    def receivers(self, rng):
-        """(places, normals, albedo) of pixels spread over the picture."""
-        frame = self._frame
-        flat = placement.pixels((frame.depth > 0) & (frame.depth < light.FARTHEST), rng)
-        row, column = np.divmod(flat, frame.size[0])
-        places = passes.positions(frame, self._camera, flat)
-        normals = np.stack([axis[row, column] for axis in frame.normal], -1).astype(float)
-        albedo = np.mean([axis[row, column] for axis in frame.diffuse_color], 0)
-        # Off the surface by more than the depth's own precision.
-        off = 1e-3 * np.abs(frame.depth[row, column])[:, None]
-        return np.nan_to_num(places + off * normals), np.nan_to_num(normals), np.nan_to_num(albedo)
-
-    def sees(self, places, normals):
-        """(bool (N,), rows, columns): which of these points of surfaces the picture shows, and where."""
-        row, column, depth = passes.project(places, self._frame, self._camera)
-        shown = self._frame.depth[row, column]
-        toward = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - places
-        return (row >= 0) & (depth < 1.01 * shown) & (np.sum(toward * normals, -1) > 0), row, column
-
-    def radiance_by(self, geometry, rng):
-        """What placement.bounces() asks: from the picture where it shows the point, else by the lamps and materials."""
-        def radiance(places, normals, things):
-            albedo, emission = geometry.look(things)
-            direct = rays.direct_light(geometry, places, normals, rng) + self._sky
-            seen, row, column = self.sees(places, normals)
-            for guess, known in ((direct, self._frame.diffuse_direct), (albedo, self._frame.diffuse_color),
-                                 (emission, self._frame.emission)):
-                shown = np.nan_to_num(np.mean([axis[row, column] for axis in known], 0), posinf=0.0)
-                guess[seen] = np.clip(shown[seen], 0, None)
-            return direct, albedo, emission
-        return radiance
 
 
 def register():

@@ -21,6 +21,7 @@ from .. import light
 from ..translations import say
 from . import nodes, passes, placement
 from .nodes import MARK
+from .status import Problem
 
 SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
 SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
@@ -247,10 +248,17 @@ class Saved:
         return passes.load(self.path, self.layer, self.window)
 
 
-def save(scene, depsgraph):
-    """[Saved] of the views that were rendered for this frame of `scene`. Raises status.Problem."""
-    return [Saved(passes.save(view), view.view_layers[0].name, passes.window(scene)[0],
-                  camera(view, depsgraph, scene)) for view in posed(scene)]
+def save(scene, depsgraph, warn):
+    """[Saved] of the views that were rendered for this frame of `scene`. warn: called with a text where one fails."""
+    found = []
+    for view in posed(scene):
+        try:
+            path = passes.save(view)
+        except Problem as problem:
+            warn(say("A view could not be used: {}", say(*problem.args)))
+            continue
+        found.append(Saved(path, view.view_layers[0].name, passes.window(scene)[0], camera(view, depsgraph, scene)))
+    return found
 
 
 def unusable(thing):
