@@ -4,8 +4,8 @@
 from dataclasses import dataclass, field
 
 import bpy
-from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, IntVectorProperty, PointerProperty,
-                       StringProperty)
+from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, IntVectorProperty,
+                       PointerProperty, StringProperty)
 
 from . import light
 from .pipeline import status, views, wiring
@@ -42,12 +42,12 @@ START = {"FULL": 1, "HALF": 2, "QUARTER": 4}
 PARAMETERS = (
     Parameter(
         "method", EnumProperty, "Method",
-        "How the light is gathered",
+        "How the light is gathered: how close it comes to Cycles, and what it costs",
         {"default": "RADIOSITY", "options": set(), "update": _rewire, "items": (
-            ("PAPER", "Paper", "One bounce between the surfaces that the camera sees, through whatever stands between them: "
-                               "the fastest", 0),
-            ("RADIOSITY", "Radiosity", "Several bounces between the surfaces that all views see, and what stands between two "
-                                       "of them hides them from each other: the closest to Cycles", 1))}),
+            ("PAPER", "Paper", "One bounce between the surfaces that the camera sees, through whatever stands between "
+                               "them: the fastest", 0),
+            ("RADIOSITY", "Radiosity", "Several bounces between the surfaces that all views see, which hide one another: "
+                                       "the closest to Cycles", 1))}),
     Parameter(
         "strength", FloatProperty, "Strength",
         "Scales the indirect light in the picture. 1 is what the light really does; it is a factor on linear light, "
@@ -80,25 +80,26 @@ PARAMETERS = (
         {"default": 16, "min": 1, "max": 1024, "soft_min": 4, "soft_max": 256}),
     Parameter(
         "bounces", IntProperty, "Bounces",
-        "How often light is passed on from surface to surface. Bright rooms want more; each costs about a tenth of the "
-        "gather",
+        "How often light is passed on from surface to surface. Rooms with bright walls want more. Each adds a little "
+        "time, the same for pictures of any size",
         {"default": 4, "min": 1, "max": 8}),
     Parameter(
         "use_visibility", BoolProperty, "Visibility",
-        "Let surfaces hide what lies behind them. Without, light passes through everything, and closed rooms with "
-        "furniture get too bright",
+        "Let surfaces hide what lies behind them. Without, light passes through everything, rooms with furniture get too "
+        "bright, and the gather takes about half the time",
         {"default": True}),
     Parameter(
         "views", EnumProperty, "Views",
-        "Which cameras see the surfaces that send light. What no view sees sends none. Each further view is one sample of "
-        "EEVEE",
+        "Which cameras see the surfaces that send light. What no view sees sends none. Each further view costs one sample "
+        "of EEVEE",
         {"default": DEFAULT_VIEWS, "options": set(), "update": _rewire, "items": (
             ("CAMERA", "Camera Only", "Only the picture itself: the fastest, without light from outside it", 0),
             ("AUTOMATIC", "Automatic", "Views are placed in every shot where they see most of what is missing", 1),
             ("MANUAL", "Manual", "The cameras that you list", 2))}),
     Parameter(
         "view_count", IntProperty, "Views at Most",
-        "How many views are placed at most. Fewer are placed where a further one would see little that is new",
+        "How many views are placed at most. Fewer are placed where a further one would see little that is new. Each "
+        "costs one sample of EEVEE",
         {"default": 7, "min": 1, "max": views.MOST, "options": set(), "update": _rewire}),
     Parameter(
         "seed", IntProperty, "Seed",

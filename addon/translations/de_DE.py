@@ -268,4 +268,82 @@ TEXTS = {
     "the preferences":
         "Der Grafiktreiber kann den Shader '{}' nicht übersetzen. Den Treiber aktualisieren oder in den "
         "Benutzereinstellungen Blenders anderes GPU-Backend versuchen",
+
+    # Radiosity and its views
+    "Method": "Verfahren",
+    "How the light is gathered: how close it comes to Cycles, and what it costs":
+        "Wie das Licht gesammelt wird: wie nah es Cycles kommt und was es kostet",
+    "Paper": "Paper",
+    "One bounce between the surfaces that the camera sees, through whatever stands between them: the fastest":
+        "Eine Reflexion zwischen den Flächen, die die Kamera sieht, durch alles hindurch, was zwischen ihnen steht: "
+        "am schnellsten",
+    "Radiosity": "Radiosity",
+    "Several bounces between the surfaces that all views see, which hide one another: the closest to Cycles":
+        "Mehrere Reflexionen zwischen den Flächen, die alle Ansichten sehen und die einander verdecken: am nächsten "
+        "an Cycles",
+    "Draws": "Ziehungen",
+    "Emitters that a texel looks at, each chosen among sixteen. Time grows in proportion, noise falls with the "
+    "square root":
+        "Strahler, zu denen ein Texel blickt, jeder aus sechzehn gewählt. Die Zeit wächst im gleichen Verhältnis, "
+        "das Rauschen sinkt mit der Wurzel",
+    "Bounces": "Reflexionen",
+    "How often light is passed on from surface to surface. Rooms with bright walls want more. Each adds a little "
+    "time, the same for pictures of any size":
+        "Wie oft das Licht von Fläche zu Fläche weitergeht. Räume mit hellen Wänden brauchen mehr. Jede kostet ein "
+        "wenig Zeit, für Bilder jeder Größe gleich viel",
+    "Visibility": "Verdeckung",
+    "Let surfaces hide what lies behind them. Without, light passes through everything, rooms with furniture get too "
+    "bright, and the gather takes about half the time":
+        "Flächen verdecken lassen, was hinter ihnen liegt. Ohne dies geht Licht durch alles hindurch, Räume mit "
+        "Möbeln werden zu hell, und das Sammeln braucht etwa die halbe Zeit",
+    "Views": "Ansichten",
+    "Which cameras see the surfaces that send light. What no view sees sends none. Each further view costs one "
+    "sample of EEVEE":
+        "Welche Kameras die Flächen sehen, die Licht aussenden. Was keine Ansicht sieht, sendet keines. Jede weitere "
+        "Ansicht kostet ein Sample von EEVEE",
+    "Camera Only": "Nur Kamera",
+    "Only the picture itself: the fastest, without light from outside it":
+        "Nur das Bild selbst: am schnellsten, ohne Licht von außerhalb",
+    "Automatic": "Automatisch",
+    "Views are placed in every shot where they see most of what is missing":
+        "Ansichten werden in jeder Einstellung dorthin gesetzt, wo sie am meisten vom Fehlenden sehen",
+    "Manual": "Von Hand",
+    "The cameras that you list": "Die Kameras der Liste",
+    "Views at Most": "Höchstens Ansichten",
+    "How many views are placed at most. Fewer are placed where a further one would see little that is new. Each "
+    "costs one sample of EEVEE":
+        "Wie viele Ansichten höchstens gesetzt werden. Weniger, wo eine weitere wenig Neues sähe. Jede kostet ein "
+        "Sample von EEVEE",
+    "Cameras": "Kameras",
+    "The views, where they are manual": "Die Ansichten, wenn sie von Hand gewählt sind",
+    "Add View": "Ansicht hinzufügen",
+    "Add the selected camera to the views that send light, or an empty line where none is selected":
+        "Die gewählte Kamera zu den Ansichten nehmen, die Licht aussenden, oder eine leere Zeile, wo keine gewählt "
+        "ist",
+    "Remove View": "Ansicht entfernen",
+    "Take this camera off the list. The camera itself stays":
+        "Diese Kamera von der Liste nehmen. Die Kamera selbst bleibt",
+    "Line": "Zeile",
+    "Which line of the list, counted from 0": "Welche Zeile der Liste, von 0 an gezählt",
+    "Light seen by the camera alone": "Licht, das die Kamera allein sieht",
+    "With {} further views": "Mit {} weiteren Ansichten",
+    "Afterlight's views (used by its helper scenes)": "Afterlights Ansichten (für seine Hilfsszenen)",
+    "No views were placed: no surface lights what the camera sees":
+        "Keine Ansicht wurde gesetzt: keine Fläche beleuchtet, was die Kamera sieht",
+    'The view "{}" sees no surface that lights the picture, and is left out. It may be inside a wall, or look away. '
+    "Move it, or remove it from the list":
+        'Die Ansicht "{}" sieht keine Fläche, die das Bild beleuchtet, und bleibt aus. Vielleicht steckt sie in '
+        "einer Wand oder schaut weg. Sie verschieben oder von der Liste nehmen",
+    "No views were placed: there is no free place that shows more than the camera does":
+        "Keine Ansicht wurde gesetzt: kein freier Ort zeigt mehr als die Kamera",
+    "A view in the list has no camera. Choose one, or remove the line":
+        "Eine Ansicht der Liste hat keine Kamera. Eine wählen oder die Zeile entfernen",
+    'The view "{}" is no camera, and is left out. Choose a camera in its place':
+        'Die Ansicht "{}" ist keine Kamera und bleibt aus. Statt ihrer eine Kamera wählen',
+    'The view "{}" is panoramic, and is left out. Set its Lens Type to Perspective or Orthographic':
+        'Die Ansicht "{}" ist panoramisch und bleibt aus. Ihren Objektivtyp auf Perspektivisch oder Orthografisch '
+        "stellen",
+    "A view could not be used: {}": "Eine Ansicht war nicht zu gebrauchen: {}",
+    "A scene through which Afterlight renders its views, or its node in the compositor, was deleted":
+        "Eine Szene, durch die Afterlight seine Ansichten rendert, oder ihr Node im Compositor wurde gelöscht",
 }
