@@ -2,10 +2,10 @@
 """What Blender sees of Afterlight, registered in the order in which the parts need one another."""
 
 from . import help_page, migration, operators, panel, settings, translations
-from .pipeline import engine, handlers, relight, scout
+from .pipeline import engine, handlers, relight, scout, turns
 
 # migration before handlers: what follows a loaded file must find its settings in order.
-PARTS = (translations, help_page, settings, engine, scout, relight, operators, panel, migration, handlers)
+PARTS = (translations, help_page, settings, turns, engine, scout, relight, operators, panel, migration, handlers)
 
 
 def register():

@@ -192,7 +192,7 @@ def bits_of(texture):
     halves = gpu.types.GPUTexture((2 * texture.width, texture.height), format="RGBA32F")
     shader = halves_shader()
     shader.bind()
-    shader.uniform_sampler("source", texture)
+    shader.uniform_sampler("source", texture.handle)
     shader.image("halves", halves)
     gpu.compute.dispatch(shader, -(-texture.width // 8), -(-texture.height // 8), 1)
     gpu.shader.unbind()

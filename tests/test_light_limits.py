@@ -114,7 +114,7 @@ def test_rows_come_back_bottom_first(light):
 def test_progress_and_cancel(light, monkeypatch):
     """Stages come in order with a share that never falls; bands report in between; a true answer cancels at once."""
     passes, camera = fixtures.box_frame(light, 96, 72)
-    monkeypatch.setattr(light.pipeline, "BAND_COST", 96 * 16 * 8)
+    monkeypatch.setattr(light.device, "band", lambda _: 96 * 16 * 8)
     calls = []
     banded = light.gather_indirect(passes, camera, settings(light, samples=16),
                                    progress=lambda *call: bool(calls.append(call)))
@@ -127,7 +127,7 @@ def test_progress_and_cancel(light, monkeypatch):
     for stop_at in range(len(calls)):
         count = iter(range(stop_at + 1))
         with pytest.raises(light.Cancelled):
-            monkeypatch.setattr(light.pipeline, "BAND_COST", 96 * 16 * 8)
+            monkeypatch.setattr(light.device, "band", lambda _: 96 * 16 * 8)
             light.gather_indirect(passes, camera, settings(light, samples=16),
                                   progress=lambda *_: next(count) == stop_at)
 

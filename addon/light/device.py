@@ -5,8 +5,9 @@ Valid on OpenGL, Vulkan and Metal: parameters in a std140 uniform block, create 
 memory, one image and at most fourteen samplers a pass.
 """
 
+import time
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 
 import gpu
@@ -23,6 +24,8 @@ SHADERS = Path(__file__).resolve().parents[2] / "shaders"
 # miss the cache at every row.
 SQUARE = 8, 8
 STRIP = 64, 1
+BAND_SECONDS = 0.04        # that one dispatch of a long pass is to take: so long an interface can't draw
+FIRST_BAND = 1 << 18       # samples in one, until it is known how fast this GPU is
 
 
 class GpuUnavailable(RuntimeError):
@@ -129,6 +132,50 @@ SURFELS = "surfels", "surfels_out"        # the names of textures in this format
 SURFEL_FORMAT = "RGBA32UI"
 
 
+class Here:
+    """The place where `gpu` may be used, as a rule: wherever we are. In a window it is elsewhere (pipeline/turns.py)."""
+
+    @staticmethod
+    def run(call):
+        """Return what call() returns there, or raise what it raises."""
+        return call()
+
+    @staticmethod
+    def later(call):
+        """Make a call there some time."""
+        call()
+
+
+place = Here
+
+
+def on_gpu(function):
+    """A function all of whose work is done at `place`."""
+    @wraps(function)
+    def there(*arguments, **options):
+        return place.run(lambda: function(*arguments, **options))
+    return there
+
+
+class Texture:
+    """A texture. It is freed at `place`, wherever the last who knows it lets go of it."""
+
+    def __init__(self, handle):
+        self.handle = handle
+        self.width, self.height, self.format = handle.width, handle.height, handle.format
+
+    def __del__(self):
+        place.later([vars(self).pop("handle", None)].clear)  # the list alone knows it by then
+
+    @on_gpu
+    def read(self):
+        return self.handle.read()
+
+    @on_gpu
+    def clear(self, format, value):
+        self.handle.clear(format=format, value=value)
+
+
 def parameters(**values) -> np.ndarray:
     """A Parameters block with the named fields filled from the front, the rest zero."""
     block = np.zeros((), PARAMETERS)
@@ -143,7 +190,8 @@ def as_int32(seed: int) -> int:
     return (seed & 0xFFFFFFFF) - ((seed & 0x80000000) << 1)
 
 
-def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray | None = None) -> gpu.types.GPUTexture:
+@on_gpu
+def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray | None = None) -> Texture:
     """A texture, filled from a C-contiguous float32 array in row order if one is given.
 
     Raises GpuUnavailable where the GPU has no room for it or cannot make one so large.
@@ -154,7 +202,7 @@ def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray |
             raise GpuUnavailable("The frame needs a texture of {} x {}, but this GPU's largest is {} x {}. Lower the "
                                  "render resolution", width, height, largest, largest)
         buffer = None if data is None else gpu.types.Buffer("FLOAT", data.size, data.ravel())
-        return gpu.types.GPUTexture((width, height), format=format, data=buffer)
+        return Texture(gpu.types.GPUTexture((width, height), format=format, data=buffer))
     except SystemError as error:
         raise GpuUnavailable("Blender has no GPU here. In background mode it needs a graphics driver; on a machine "
                              "without a display, install Mesa's software driver") from error
@@ -166,6 +214,7 @@ def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray |
 
 
 @cache
+@on_gpu
 def shader(name: str) -> gpu.types.GPUShader:
     """The compiled pass, kept until release(). Raises GpuUnavailable where it does not compile."""
     made_of = PASSES[name]
@@ -200,6 +249,7 @@ def release() -> None:
     shader.cache_clear()
 
 
+@on_gpu
 def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, int], views: np.ndarray | None = None) -> None:
     """Run a pass in (x, y) work groups; textures by the names in PASSES; views: a Views block where it knows them."""
     made_of, program = PASSES[name], shader(name)
@@ -210,8 +260,8 @@ def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, in
         cameras = gpu.types.GPUUniformBuf(views.tobytes())
         program.uniform_block("views", cameras)
     for sampler in made_of.reads:
-        program.uniform_sampler(sampler, textures[sampler])
-    program.image(made_of.writes, textures[made_of.writes])
+        program.uniform_sampler(sampler, textures[sampler].handle)
+    program.image(made_of.writes, textures[made_of.writes].handle)
     gpu.compute.dispatch(program, *groups, 1)
     # Blender's context remembers what was bound last by its address. Left bound and freed later, it would be taken
     # for whatever shader gets that address next, and the compositor then crashes in the driver.
@@ -223,14 +273,33 @@ def groups(width: int, height: int, shape: tuple[int, int] = SQUARE) -> tuple[in
     return -(-width // shape[0]), -(-height // shape[1])
 
 
-def read(source: gpu.types.GPUTexture) -> np.ndarray:
+def read(source: Texture) -> np.ndarray:
     """(height, width, channels) float32, the texture's first row first; waits for the GPU."""
     return np.asarray(source.read())
 
 
-def wait(target: gpu.types.GPUTexture) -> None:
+@on_gpu
+def wait(target: Texture) -> None:
     """Return when everything that writes `target` has run: reads one texel of it back."""
     probed = texture(1, 1)
     name = "probe_surfels" if target.format == SURFEL_FORMAT else "probe"
     dispatch(name, parameters(), {PASSES[name].reads[0]: target, "probed_out": probed}, (1, 1))
     read(probed)
+
+
+_band = {}  # samples, by pass
+
+
+def band(name: str) -> float:
+    """How many samples one dispatch of a long pass may take."""
+    return _band.get(name, FIRST_BAND)
+
+
+@on_gpu
+def run_band(name: str, samples: int, *arguments) -> None:
+    """As dispatch(), of this many samples, and waited for; band() then knows how fast this GPU is."""
+    start = time.perf_counter()
+    dispatch(name, *arguments)
+    wait(arguments[1][PASSES[name].writes])
+    fitting = samples * BAND_SECONDS / (time.perf_counter() - start)
+    _band[name] = min(max(fitting, band(name) / 4, FIRST_BAND / 16), 2 * band(name))

@@ -8,16 +8,14 @@ can feed and read any of them; gather_indirect() at the end puts them together. 
 import time
 from dataclasses import dataclass
 
-import gpu
 import numpy as np
 
 from . import device
 from .inputs import Camera, Draws, Passes, Settings
 from .region import TABLE_WIDTH, level_boxes, offsets, samples_at
 
-Texture = gpu.types.GPUTexture
+Texture = device.Texture
 MERGED_AT_ONCE = 3         # levels that one dispatch of merge makes from one
-BAND_COST = 1 << 24        # samples in one dispatch: under a second even on a software GPU
 
 
 class Cancelled(Exception):
@@ -101,8 +99,8 @@ def gather(pyramid: Pyramid, settings: Settings, after_band=lambda done: None) -
     rgb: irradiance E, W m^-2, the sum of pi L times the form factor; a: the sum F of the form factors, the share of
     the hemisphere that sends light. Both unbiased for the sum over the whole region, and not yet bounded.
 
-    Long ones run in bands of BAND_COST samples, each waited for, with after_band(share done) after each: no driver's
-    watchdog fires, and the render can be cancelled.
+    Long ones run in bands of device.band() samples, each waited for, with after_band(share done) after each: no driver's
+    watchdog fires, the interface gets its turns, and the render can be cancelled.
     """
     disk, ring = offsets(settings.radius, finest=True), offsets(settings.radius, finest=False)
     block = pyramid.parameters.copy()
@@ -119,12 +117,10 @@ def gather(pyramid: Pyramid, settings: Settings, after_band=lambda done: None) -
     first = 0
     while first < len(done):
         before = done[first - 1] if first else 0
-        end = max(first + 1, int(np.searchsorted(done, before + BAND_COST, side="right")))
+        end = max(first + 1, int(np.searchsorted(done, before + device.band("gather"), side="right")))
         block["band"][0] = first
-        device.dispatch("gather", block, textures, (end - first, 1))
-        if end - first < len(done):
-            device.wait(irradiance)
-            after_band(done[end - 1] / done[-1])
+        device.run_band("gather", int(done[end - 1] - before), block, textures, (end - first, 1))
+        after_band(done[end - 1] / done[-1])
         first = end
     return irradiance
 

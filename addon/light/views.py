@@ -26,7 +26,6 @@ ENTRIES = 1 << 18          # of the table that emitters are drawn from
 BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
 BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
 KINDS = "emitters", "receivers"
-ROWS_COST = 1 << 22        # candidates of one dispatch, so that no driver's watchdog fires
 
 
 def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, fraction: False,
@@ -173,14 +172,15 @@ def draw(name, seed, table, target, textures, block=None, after_rows=lambda done
     """Gather into `target` by one of the passes "draw_...", some rows at a time."""
     block = device.parameters() if block is None else block.copy()
     block["band"][1] = device.as_int32(seed)
-    rows = max(1, ROWS_COST // int(target.width * table["draws"][0] * table["draws"][1]) // 8) * 8
-    for first in range(0, target.height, rows):
+    each = int(target.width * table["draws"][0] * table["draws"][1])  # candidates of a row
+    first = 0
+    while first < target.height:
+        rows = min(max(1, int(device.band(name)) // each // 8) * 8, target.height - first)
         block["band"][0] = first
-        count = min(rows, target.height - first)
-        device.dispatch(name, block, textures | {"irradiance_out": target}, device.groups(target.width, count), table)
-        if first + count < target.height:
-            device.wait(target)
-            after_rows((first + count) / target.height)
+        device.run_band(name, rows * each, block, textures | {"irradiance_out": target},
+                        device.groups(target.width, rows), table)
+        first += rows
+        after_rows(first / target.height)
 
 
 def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:

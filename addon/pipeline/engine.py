@@ -17,10 +17,12 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, passes, relight, status, views, wiring
+from . import checks, passes, relight, status, turns, views, wiring
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
+
+TELL = 0.2     # seconds between two words on progress: Blender draws its window at each
 
 
 @dataclass
@@ -46,11 +48,12 @@ class AfterlightEngine(bpy.types.RenderEngine):
     bl_idname = ENGINE
     bl_label = "Afterlight (used by its helper scenes)"
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
-    bl_use_gpu_context = True
+    bl_use_gpu_context = bpy.app.background  # in a window the GPU is taken by turns (turns.py)
 
     idle = False  # render nothing: handlers.py has a use for an empty render
     shot = None
     views = ()  # what views.save() gave for the frame
+    told = "", 0.0  # stage that Blender shows, and since when
     file = ""  # the saved passes of the frame, between its first view layer and its last
 
     def update_render_passes(self, scene, layer):
@@ -157,12 +160,12 @@ class AfterlightEngine(bpy.types.RenderEngine):
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
-        if isinstance(shot.settings, light.Draws):
-            picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings,
-                                         progress=self._progress, timings=timed, broken=broken)
-        else:
-            picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed,
-                                            broken=broken)
+        options = {"progress": self._progress, "timings": timed, "broken": broken}
+        with turns.until(self.test_break):
+            if isinstance(shot.settings, light.Draws):
+                picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, **options)
+            else:
+                picture = light.gather_indirect(frame, shot.camera, shot.settings, **options)
         for name, count in broken.items():
             self.report({"WARNING"}, say(
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "
@@ -173,8 +176,11 @@ class AfterlightEngine(bpy.types.RenderEngine):
         return picture
 
     def _progress(self, stage, fraction):
-        self.update_stats("Afterlight", f"{say(status.in_words(stage))}, {fraction:.0%}")
-        self.update_progress(fraction)
+        now = time.perf_counter()
+        if stage != self.told[0] or now > self.told[1] + TELL:
+            self.told = stage, now
+            self.update_stats("Afterlight", f"{say(status.in_words(stage))}, {fraction:.0%}")
+            self.update_progress(fraction)
         return self.test_break()
 
     def _hand_back(self, shot, picture):

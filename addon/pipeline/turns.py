@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The GPU in a window: taken by turns with the interface.
+
+A render has a thread of its own there. Blender lends it the GPU only together with the lock that its interface draws
+under, and so for the whole of our part nothing could be drawn, and no ESC be seen. Therefore our engine asks for none: what
+it wants of the GPU it leaves here, a call at a time, and the main thread makes the calls between two looks at the window.
+"""
+
+import queue
+import sys
+import threading
+import time
+from concurrent.futures import Future
+from contextlib import contextmanager
+
+import bpy
+
+from .. import light
+
+TURN = 0.02     # seconds of calls before the window has its turn
+GAP = 0.002     # seconds that a turn waits for the next call
+RENDERING, IDLE = 0.0, 0.1  # seconds until the next look: while something renders, and else
+PATIENCE = 0.05  # seconds that a call waits before it asks whether it is still wanted
+
+_calls = queue.SimpleQueue()  # (Future, call)
+_open = False
+_stopped = lambda: False  # noqa: E731
+
+
+@contextmanager
+def until(stopped):
+    """What waits for its turn within gives up as soon as stopped() is true."""
+    global _stopped
+    before, _stopped = _stopped, stopped
+    try:
+        yield
+    finally:
+        _stopped = before
+
+
+def run(call):
+    """Have the main thread make a call: returns what it returns, raises what it raises. Raises light.Cancelled instead
+    when the render is to stop, or nobody makes calls any more."""
+    if _is_main():
+        return call()
+    future = Future()
+    _calls.put((future, call))
+    while not future.done():
+        try:
+            future.exception(timeout=PATIENCE)
+        except TimeoutError:
+            if (_stopped() or not _open) and future.cancel():
+                raise light.Cancelled from None
+    return future.result()
+
+
+def later(call):
+    """Have the main thread make a call when it comes round to it."""
+    if _is_main():
+        call()
+    else:
+        _calls.put((Future(), call))
+
+
+def _is_main():
+    return threading.current_thread() is threading.main_thread()
+
+
+def _take():
+    """Make calls for a moment; Blender asks again when it has looked after its window."""
+    end, wait = time.perf_counter() + TURN, 0.0
+    while (left := end - time.perf_counter()) > 0:
+        try:
+            future, call = _calls.get(timeout=min(left, wait))
+        except queue.Empty:
+            break
+        _make(future, call)
+        wait = GAP
+    if bpy.app.is_job_running("RENDER"):
+        return RENDERING
+    return IDLE if _open else None
+
+
+def _make(future, call):
+    if future.set_running_or_notify_cancel():
+        try:
+            future.set_result(call())
+        except BaseException as error:
+            future.set_exception(error)
+
+
+def register():
+    global _open
+    if not bpy.app.background:
+        _open = True
+        light.device.place = sys.modules[__name__]
+        bpy.app.timers.register(_take, persistent=True)
+
+
+def unregister():
+    """A render that is under way is not lit any more, and what it leaves behind is still freed."""
+    global _open
+    _open = False
