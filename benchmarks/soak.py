@@ -133,6 +133,9 @@ class Soak:
                     node.layer = layer.name
         scene.render.resolution_x, scene.render.resolution_y = size
         settings.start, settings.samples, settings.radius = start, samples, radius
+        # Both methods, and views that come and go: with few samples Radiosity.
+        settings.method, settings.views = ("RADIOSITY", "AUTOMATIC") if samples < 65 else ("PAPER", "CAMERA")
+        settings.view_count, settings.draws = 2, 4
         ticked = self.ticked and event != "unticked"
         if settings.enabled != ticked:
             settings.enabled = ticked
