@@ -5,7 +5,7 @@ import webbrowser
 
 import bpy
 from bl_operators.presets import AddPresetBase
-from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy.types import Operator
 from bpy_extras import anim_utils
 
@@ -106,41 +106,8 @@ class AFTERLIGHT_OT_reset(_OnEditableScene, Operator):
     def execute(self, context):
         for parameter in PARAMETERS:
             context.scene.afterlight.property_unset(parameter.name)
-        if context.scene.afterlight.enabled:
-            wiring.connect(context.scene)  # the defaults may want other views
+        wiring.connect_if_enabled(context.scene)
         _warn_of_animation(self, context.scene)
-        return {"FINISHED"}
-
-
-class AFTERLIGHT_OT_view_add(_OnEditableScene, Operator):
-    bl_idname = "afterlight.view_add"
-    bl_label = "Add View"
-    bl_description = "Add the selected camera to the views that send light, or an empty line where none is selected"
-
-    def execute(self, context):
-        views = context.scene.afterlight.view_cameras
-        chosen = context.object
-        is_new = chosen is not None and chosen.type == "CAMERA" and chosen not in [view.camera for view in views]
-        views.add().camera = chosen if is_new else None
-        return {"FINISHED"}
-
-
-class AFTERLIGHT_OT_view_remove(_OnEditableScene, Operator):
-    bl_idname = "afterlight.view_remove"
-    bl_label = "Remove View"
-    bl_description = "Take this camera off the list. The camera itself stays"
-
-    index: IntProperty(name="Line", description="Which line of the list, counted from 0", default=0, min=0)
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and len(context.scene.afterlight.view_cameras) > 0
-
-    def execute(self, context):
-        scene = context.scene
-        scene.afterlight.view_cameras.remove(self.index)
-        if scene.afterlight.enabled:
-            wiring.connect(scene)
         return {"FINISHED"}
 
 
@@ -196,6 +163,6 @@ def _animated(scene):
 
 
 CLASSES = (AFTERLIGHT_OT_mend, AFTERLIGHT_OT_repair, AFTERLIGHT_OT_copy_settings, AFTERLIGHT_OT_reset,
-           AFTERLIGHT_OT_view_add, AFTERLIGHT_OT_view_remove, AFTERLIGHT_OT_help, AFTERLIGHT_OT_preset_add)
+           AFTERLIGHT_OT_help, AFTERLIGHT_OT_preset_add)
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -46,6 +46,7 @@ class AFTERLIGHT_MT_indirect_light(Menu):
         layout.menu("AFTERLIGHT_MT_copy_settings")
         layout.operator("afterlight.reset", text="Reset Settings")
         layout.operator("afterlight.repair")
+        layout.operator("afterlight.place_views")
         layout.separator()
         layout.operator("afterlight.help", icon="QUESTION").section = ""
 
@@ -121,37 +122,6 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
         column.prop(settings, "use_animated_seed")
 
 
-class AFTERLIGHT_PT_views(_InRenderProperties, Panel):
-    bl_label = "Views"
-    bl_parent_id = "AFTERLIGHT_PT_indirect_light"
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and context.scene.afterlight.method != "PAPER"
-
-    def draw(self, context):
-        layout, scene = self.layout, context.scene
-        settings = scene.afterlight
-        layout.use_property_split, layout.use_property_decorate = True, False
-        layout.active = settings.enabled
-        layout.prop(settings, "views")
-        if settings.views == "AUTOMATIC":
-            layout.prop(settings, "view_count")
-        elif settings.views == "MANUAL":
-            column = layout.column(align=True)
-            for index, view in enumerate(settings.view_cameras):
-                row = column.row(align=True)
-                row.prop(view, "camera", text="")
-                row.operator("afterlight.view_remove", text="", icon="X").index = index
-            column.operator("afterlight.view_add", icon="ADD")
-        if settings.views == "AUTOMATIC" and (found := status.coverage(scene)):
-            shares, _ = found
-            _draw_row(layout, say("Light seen by the camera alone"), f"{shares[0]:.0%}")
-            _draw_row(layout, say("With {} further views", len(shares) - 1), f"{shares[-1]:.0%}")
-        for text in status.warnings(scene):
-            _draw_text(layout, text, "INFO", context)
-
-
 class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
     bl_label = "Last Render"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
@@ -217,7 +187,7 @@ def _draw_text(layout, text, icon, context):
 
 
 CLASSES = (AFTERLIGHT_PT_presets, AFTERLIGHT_MT_copy_settings, AFTERLIGHT_MT_indirect_light,
-           AFTERLIGHT_PT_indirect_light, AFTERLIGHT_PT_sampling, AFTERLIGHT_PT_views, AFTERLIGHT_PT_last_render)
+           AFTERLIGHT_PT_indirect_light, AFTERLIGHT_PT_sampling, AFTERLIGHT_PT_last_render)
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(CLASSES)
 

@@ -31,9 +31,7 @@ class Parameter:
 
 def _rewire(settings, _context):
     """The number of views has changed."""
-    scene = settings.id_data
-    if settings.enabled and scene.library is None:
-        wiring.connect(scene)
+    wiring.connect_if_enabled(settings.id_data)
 
 
 DEFAULT_VIEWS = "AUTOMATIC"
@@ -90,16 +88,16 @@ PARAMETERS = (
         {"default": True}),
     Parameter(
         "views", EnumProperty, "Views",
-        "Which cameras see the surfaces that send light. What no view sees sends none. Each further view costs one sample "
-        "of EEVEE",
+        "Which cameras see the surfaces that send light: what none of them sees sends none. Each further view costs the "
+        "time of one sample of EEVEE",
         {"default": DEFAULT_VIEWS, "options": set(), "update": _rewire, "items": (
             ("CAMERA", "Camera Only", "Only the picture itself: the fastest, without light from outside it", 0),
             ("AUTOMATIC", "Automatic", "Views are placed in every shot where they see most of what is missing", 1),
             ("MANUAL", "Manual", "The cameras that you list", 2))}),
     Parameter(
         "view_count", IntProperty, "Views at Most",
-        "How many views are placed at most. Fewer are placed where a further one would see little that is new. Each "
-        "costs one sample of EEVEE",
+        "How many views are placed at most. Fewer are placed, at less cost, where a further one would see little that is "
+        "new",
         {"default": 7, "min": 1, "max": views.MOST, "options": set(), "update": _rewire}),
     Parameter(
         "seed", IntProperty, "Seed",

@@ -93,7 +93,8 @@ def test_search_finds_what_the_menus_hold(scene, addon):
             elif kind == "operator":
                 found.add(arguments[0])
     everything = {f"afterlight.{name}" for name in dir(bpy.ops.afterlight)}
-    internal = {"afterlight.mend", "afterlight.preset_add", "afterlight.view_add", "afterlight.view_remove"}  # with a button of their own beside what they are for
+    # With a button of their own beside what they are for.
+    internal = {f"afterlight.{name}" for name in ("mend", "preset_add", "view_add", "view_remove")}
     assert found >= everything - internal
 
 

@@ -26,7 +26,8 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
 
     def settings():
         return [*drawn(panel.AFTERLIGHT_PT_indirect_light), *drawn(panel.AFTERLIGHT_PT_sampling),
-                *(drawn(panel.AFTERLIGHT_PT_views) if panel.AFTERLIGHT_PT_views.poll(bpy.context) else ())]
+                *(drawn(addon.views_panel.AFTERLIGHT_PT_views)
+                  if addon.views_panel.AFTERLIGHT_PT_views.poll(bpy.context) else ())]
 
     names = {parameter.name for parameter in addon.settings.PARAMETERS}
     paper, radiosity = {"samples", "radius"}, {"draws", "bounces", "use_visibility", "views", "view_count"}
@@ -36,6 +37,9 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
         assert greyed(settings()) == names - others, "nothing applies before the box is ticked"
     scene.afterlight.enabled = True
     assert not greyed(settings())
+    scene.afterlight.method, scene.afterlight.views = "RADIOSITY", "CAMERA"
+    assert greyed(settings()) == {"view_count"}, "there are no further views"
+    scene.afterlight.method = "PAPER"
     scene.afterlight.samples, scene.afterlight.radius = 256, 8
     assert greyed(settings()) == {"seed", "use_animated_seed"}, "every texel is visited: there is no noise"
     ((_, arguments, _, _),) = drawn(panel.AFTERLIGHT_PT_indirect_light, "draw_header")

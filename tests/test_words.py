@@ -99,7 +99,7 @@ def rna_texts(addon):
     kinds = [kind for base in (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu) for kind in base.__subclasses__()
              if kind.__module__.startswith(extension.MODULE)]
     assert {kind.__name__ for kind in kinds} >= {"AFTERLIGHT_OT_update", "AFTERLIGHT_PT_sampling"}
-    properties = list(addon.settings.AfterlightSettings.bl_rna.properties)
+    properties = [*addon.settings.AfterlightSettings.bl_rna.properties, *addon.settings.AfterlightView.bl_rna.properties]
     for kind in kinds:
         yield getattr(kind, "bl_description", "")
         if issubclass(kind, bpy.types.Operator):

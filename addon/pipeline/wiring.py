@@ -33,6 +33,12 @@ def connect(scene):
     helper.view_layers[0].update()
 
 
+def connect_if_enabled(scene):
+    """For settings that decide what connect() makes."""
+    if scene.afterlight.enabled and scene.library is None:
+        connect(scene)
+
+
 def follow(scene):
     """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
     the scene renamed or copied. Puts no node where the user may have taken one away."""
