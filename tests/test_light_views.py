@@ -306,6 +306,24 @@ def test_a_wall_between_two_places(light, eyes, wall, blocked):
     assert not over.any()
 
 
+def test_the_ends_of_a_way_do_not_count(light):
+    """A 50th at each: a way that ends three quarters of a step behind a wall, or starts there, is blocked where its last place,
+    or its first, counts and lies behind the wall."""
+    views = rooms.box_views(light, towards=rooms.AXES[:1])    # looks at the wall x = 1 from 0.9 m
+    staged = stages(light, views, draws(light))
+    step = 0.6 / light.views.STEPS
+    jitter = np.concatenate([np.arange(0.005, 1, 0.01)] * 5)
+    sides = np.repeat(np.linspace(-0.3, 0.3, 5), 100)
+    behind, before = (np.stack([np.full(500, x), sides, 0.5 * sides], -1) for x in (0.9 + 0.75 * step, 0.3 + 0.75 * step))
+    places, count = np.stack([jitter, light.views.STEPS - 1 + jitter]), 0.02 * light.views.STEPS
+    assert light.views.STEPS == 24    # jitter at the limits is at least 0.005 away
+    for start, end, expected in (
+            (behind, before, (places[0] >= count) & (places[0] < 0.73)),
+            (before, behind, (places[1] <= light.views.STEPS - count) & (places[1] > light.views.STEPS - 0.73))):
+        assert 0.2 < expected.mean() < 0.3
+        assert np.array_equal(is_blocked(light, staged, start, end, jitter), expected)
+
+
 def ways_between(views, count=16_000, per_view=300):
     """(starts, ends) of random ways between surfaces that face each other, relative to the main camera."""
     places, normals = surfaces(views, per_view)
@@ -419,8 +437,35 @@ def test_draws_are_unbiased(light, monkeypatch, name, groups, candidates, visibi
         assert (deviation > 3).sum() <= most and deviation.max() < furthest, np.sort(deviation.ravel())[-3:]
 
 
-def test_smoothing_agrees_with_float64(light):
-    views = room_views(light)
+def test_what_blocks_receive_is_unbiased(light, monkeypatch):
+    """Each view's receivers, whose light is passed on: the mean over 1,000 seeds against the sum over all pairs. Of the 27 x 3
+    numbers two may lie beyond 3 standard errors, none beyond 4.5; all these errors are under 1 % of the mean."""
+    monkeypatch.setattr(light.views, "ENTRIES", 1 << 12)
+    staged = stages(light, room_views(light, (24, 18)), draws(light, visibility=False))
+    count = light.views.count_of(staged.table["receivers"])
+    receivers = rows(staged.receivers, count, 4)
+    emitters = rows(staged.emitters, light.views.count_of(staged.table["emitters"]), 4)
+    sent = sent_by(light, staged)
+    normals = reference.direction(receivers[:, 1, :3])
+    expected = views_64.all_pairs(receivers[:, 0, :3], normals, emitters, rows(sent, len(emitters))[:, 0])
+    runs = []
+    for seed in range(1000):
+        target = light.device.texture(light.device.RECORDS_WIDTH, light.views.rows_of(staged.table["receivers"]))
+        table = light.views.draw_table(sent, staged.table, seed)
+        staged.table["draws"][:2] = light.views.BOUNCE_GROUPS, light.views.BOUNCE_CANDIDATES
+        light.views.draw("draw_blocks", seed, staged.table, target, {
+            "receivers": staged.receivers, "emitters": staged.emitters, "radiance": sent, "table": table,
+            "depths": staged.depths})
+        runs.append(rows(target, count)[:, 0, :3])
+    error = np.std(runs, 0, ddof=1) / np.sqrt(len(runs)) + 1e-5 * expected.max()
+    deviation = np.abs(np.mean(runs, 0) - expected) / error
+    assert error.max() < 0.01 * expected.mean()
+    assert (deviation > 3).sum() <= 2 and deviation.max() < 4.5
+
+
+@pytest.mark.parametrize("name", ["random", "room"])
+def test_smoothing_agrees_with_float64(light, name):
+    views = FRAMES[name](light)
     chosen = draws(light, start=1, groups=2, candidates=2)
     base, level, _, _ = base_receivers(light, views, chosen)
     noise = np.random.default_rng(6).random((*level.area.shape, 4)).astype(np.float32)
