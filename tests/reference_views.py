@@ -55,11 +55,12 @@ def depths(view, step):
         ray = np.asarray(camera.offset) + np.asarray(camera.scale) * step * (texel + corner)
         ray = np.concatenate([ray, np.zeros(depth.shape)[..., None] - (not camera.orthographic)], -1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            # Where the corner's ray meets the plane n.(p - place) = 0.
+            # Where the corner's ray meets the plane n.(p - place) = 0; below 0 where it never does ahead of the camera.
             reach = (dot(normal, ray - place * (1, 1, 0)) / normal[..., 2] + depth if camera.orthographic
                      else dot(normal, place) / dot(normal, ray))
-        fits = surface & np.isfinite(reach) & (reach > 0) & (reach < STEEPEST * depth)
-        farthest = np.maximum(farthest, np.where(fits, reach, 0))
+        known = surface & np.isfinite(reach) & normal.any(-1)
+        reach = np.where(known & (reach > 0), np.minimum(reach, STEEPEST * depth), STEEPEST * depth)
+        farthest = np.maximum(farthest, np.where(known, reach, 0))
     return np.stack([depth, farthest], -1)
 
 
@@ -146,8 +147,12 @@ def emit(views, eyes, own, side, step, receives):
 
 
 def radiate(emitters, irradiance):
-    """(n, 4): radiance and own area of emitters (n, 4, 4), given the irradiance (n, 3) of the receiver that each belongs to."""
-    return np.concatenate([emitters[:, 2, :3] + emitters[:, 3, :3] * irradiance / np.pi, emitters[:, 0, 3:]], -1)
+    """(n, 4): radiance and own area of emitters (n, 4, 4), given the irradiance (n, 3) of the receiver that each belongs to; no
+    radiance where float32 does not hold it."""
+    with np.errstate(invalid="ignore"):
+        sent = emitters[:, 2, :3] + emitters[:, 3, :3] * irradiance / np.pi
+        fits = np.abs(sent).sum(-1, keepdims=True) <= np.finfo(np.float32).max
+    return np.concatenate([np.where(fits, sent, 0), emitters[:, 0, 3:]], -1)
 
 
 def receiver_of(grid, receivers):
@@ -166,24 +171,35 @@ def form_factor(receiver, normal, place, own, mean_normal, area):
     return own * cosines / np.maximum(square * (np.pi * square + area), 1e-300)
 
 
+def what_blocks(eyes, start, end, jitter, steps):
+    """(hidden, crossed), (n,) bool each. hidden: some place on the way lies behind a view's surfaces, and is seen free by none.
+    crossed: of two neighbouring places one view sees the first alone, another the second alone, and none both, so that between
+    them there is a wall. start, end: (n, 3)."""
+    share = (np.arange(steps)[:, None] + np.broadcast_to(jitter, len(start))) / steps    # (steps, n)
+    places = start + (end - start) * share[..., None]
+    free, behind = np.zeros((2, *share.shape), bool)
+    goes_behind, comes_out, is_open = np.zeros((3, steps - 1, len(start)), bool)
+    for eye in eyes:
+        projected = project(eye, places)
+        farthest = depth_at(eye, projected, 1) * FREE_TOLERANCE
+        seen, hidden = (farthest > 0) & (projected[..., 2] < farthest), (farthest > 0) & (projected[..., 2] >= farthest)
+        free |= seen
+        behind |= hidden
+        goes_behind |= seen[:-1] & hidden[1:]
+        comes_out |= hidden[:-1] & seen[1:]
+        is_open |= seen[:-1] & seen[1:]
+    counted = (share >= MARGIN) & (share <= 1 - MARGIN)
+    crossed = goes_behind & comes_out & ~is_open & counted[:-1] & counted[1:]
+    return (behind & ~free & counted).any(0), crossed.any(0)
+
+
 def is_blocked(eyes, start, end, jitter, steps):
-    """Does some place on the way lie behind a view's surfaces, and is seen free by none? start, end: (..., 3)."""
-    blocked = np.zeros(np.broadcast_shapes(start.shape, end.shape)[:-1], bool)
-    for k in range(steps):
-        share = np.asarray((k + jitter) / steps)
-        place = start + (end - start) * share[..., None]
-        free, behind = np.zeros((2, *blocked.shape), bool)
-        for eye in eyes:
-            projected = project(eye, place)
-            farthest = depth_at(eye, projected, 1) * FREE_TOLERANCE
-            free |= (farthest > 0) & (projected[..., 2] < farthest)
-            behind |= (farthest > 0) & (projected[..., 2] >= farthest)
-        blocked |= behind & ~free & (share >= MARGIN) & (share <= 1 - MARGIN)
-    return blocked
+    """(n,) bool: by either."""
+    return np.logical_or(*what_blocks(eyes, start, end, jitter, steps))
 
 
 def power_of(sent):
-    return np.abs(sent[:, :3].sum(-1))
+    return np.abs(sent[:, :3]).sum(-1)
 
 
 def odds(sent, by_area):

@@ -47,6 +47,18 @@ def trace(camera, size, room=ROOM, solids=()):
     return depth, start + path * depth[..., None], normal
 
 
+def is_hidden(start, end, solids, thinnest=1e-5):
+    """(n,) bool: does a solid lie on the way between two places, (n, 3) each? thinnest: share of the way inside it, less than
+    which is grazing."""
+    hidden = np.zeros(len(start), bool)
+    path = end - start
+    for low, high in solids:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            near, far = np.sort([(low - start) / path, (high - start) / path], axis=0)
+        hidden |= np.minimum(far.min(-1), 1) - np.maximum(near.max(-1), 0) > thinnest
+    return hidden
+
+
 def view_of(light, camera, size, *, albedo=0.5, radiance=1.0, room=ROOM, solids=()):
     """A View of the room. albedo, radiance (of the direct light that surfaces send): a number, or a function of (place, normal)
     that gives (H, W, 3)."""
