@@ -237,9 +237,9 @@ def is_blocked(light, staged, starts, ends, jitter):
     shader.bind()
     shader.uniform_block("parameters", blocks[0])
     shader.uniform_block("views", blocks[1])
-    shader.uniform_sampler("ways", source)
-    shader.uniform_sampler("depths", staged.depths)
-    shader.image("found", found)
+    shader.uniform_sampler("ways", source.handle)
+    shader.uniform_sampler("depths", staged.depths.handle)
+    shader.image("found", found.handle)
     gpu.compute.dispatch(shader, -(-len(starts) // 64), 1, 1)
     gpu.shader.unbind()
     return np.array(found.read())[0, :, 0] > 0
@@ -662,7 +662,7 @@ def test_surfaces_without_normals_send_light(light):
 
 def test_progress_and_cancel(light, monkeypatch):
     """Stages come in order with a share that never falls; a true answer cancels at once."""
-    monkeypatch.setattr(light.views, "ROWS_COST", 40 * 16 * 16 * 8)
+    monkeypatch.setattr(light.device, "band", lambda _: 40 * 16 * 16 * 8)
     views, calls = coloured(light), []
     chosen = draws(light, start=1, bounces=3)
     banded = light.gather_views(views, chosen, progress=lambda *call: bool(calls.append(call)))
@@ -673,7 +673,7 @@ def test_progress_and_cancel(light, monkeypatch):
         assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] <= 1
     monkeypatch.undo()
     assert np.array_equal(banded, light.gather_views(views, chosen))
-    monkeypatch.setattr(light.views, "ROWS_COST", 40 * 16 * 16 * 8)
+    monkeypatch.setattr(light.device, "band", lambda _: 40 * 16 * 16 * 8)
     for stop_at in range(len(calls)):
         count = iter(range(stop_at + 1))
         with pytest.raises(light.Cancelled):
