@@ -45,7 +45,8 @@ def window(session):
     """The running Blender. Whatever a test does with it, Blender may print no traceback and report no error."""
     session.new_log()
     yield session
-    printed = session.new_log()
+    # But for what Blender says of itself, such as that there are no drivers for Cycles here.
+    printed = "\n".join(line for line in session.new_log().splitlines() if "| WARNING " not in line)
     assert "Traceback" not in printed and "Error" not in printed, printed
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a timer.
+"""The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a timer, and
+how long of it were calls of ours.
 
     tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [opengl] [vulkan] [WIDTHxHEIGHT ...]"""
 
@@ -11,8 +12,10 @@ import extension
 import steps
 from window import ROOT, Computer, Window
 
+CALL = "call"  # that the main thread makes for us
 # What is watched in the extension, from the outside in: a stall belongs to the innermost that runs.
 WATCHED = {
+    CALL: ("pipeline.turns", "_make"),
     "save passes": ("pipeline.passes", "save"),
     "load passes": ("pipeline.passes", "load"),
     "upload": ("light.pipeline", "upload"),
@@ -28,13 +31,6 @@ WATCHED = {
 }
 
 
-def prepare(width, height):
-    scene = bpy.context.scene
-    scene.render.resolution_x, scene.render.resolution_y = width, height
-    scene.eevee.taa_render_samples = 1
-    scene.afterlight.start, scene.afterlight.samples, scene.afterlight.radius = "FULL", 1024, 32
-
-
 def stage_at(moment, spans, begin, end):
     inside = [span for span in spans if span[1] <= moment <= span[2]]
     if inside:
@@ -44,7 +40,7 @@ def stage_at(moment, spans, begin, end):
 
 
 def stalls(window):
-    """{stage: (longest gap, seconds in all)} of one render by F12."""
+    """{stage: (longest gap, longest call of ours, seconds in all)} of one render by F12."""
     before = window.finished_renders()
     window.over("VIEW_3D")
     time.sleep(1)
@@ -56,22 +52,19 @@ def stalls(window):
     times = window.value("[event[:2] for event in events]")
     begin = [moment for name, moment in times if name == "render_init"][-1]
     end = [moment for name, moment in times if name == "render_complete"][-1]
-    spans = [span for span in spans if span[2]]
-    found = {}
-    for earlier, later in zip(ticks, ticks[1:]):
-        # A gap belongs to the stage that had most of it.
-        shares = {}
-        pieces = 50
-        for piece in range(pieces):
-            stage = stage_at(earlier + (later - earlier) * (piece + 0.5) / pieces, spans, begin, end)
-            shares[stage] = shares.get(stage, 0) + 1
-        stage = max(shares, key=shares.get)
-        longest, total = found.get(stage, (0, 0))
-        found[stage] = max(longest, later - earlier), total
-    for span in spans:
-        longest, total = found.get(span[0], (0, 0))
-        found[span[0]] = longest, total + span[2] - span[1]
-    return found
+    calls = [span for span in spans if span[0] == CALL]
+    spans = [span for span in spans if span[2] and span[0] != CALL]
+    gaps, longest_calls = {}, {}
+    for found, pairs in ((gaps, zip(ticks, ticks[1:])), (longest_calls, [call[1:] for call in calls])):
+        for earlier, later in pairs:
+            # It belongs to the stage that had most of it.
+            pieces = [stage_at(earlier + (later - earlier) * (piece + 0.5) / 50, spans, begin, end) for piece in range(50)]
+            stage = max(set(pieces), key=pieces.count)
+            found[stage] = max(found.get(stage, 0), later - earlier)
+    totals = {}
+    for stage, start, stop in spans:
+        totals[stage] = totals.get(stage, 0) + stop - start
+    return {stage: [found.get(stage, 0) for found in (gaps, longest_calls, totals)] for stage in {**gaps, **totals}}
 
 
 def main():
@@ -88,11 +81,11 @@ def main():
             for name, path in WATCHED.items():
                 window.value(f"watch({name!r}, *{path!r})")
             for width, height in sizes:
-                window.run(prepare, width, height)
+                window.run(steps.long_gather, width, height)
                 for run in ("first", "second"):
-                    print(f"\n{backend}, {width} x {height}, {run} render: longest stall, seconds in the stage")
-                    for stage, (longest, total) in stalls(window).items():
-                        print(f"  {stage:20} {longest:7.3f} {total:8.3f}", flush=True)
+                    print(f"\n{backend}, {width} x {height}, {run} render: longest stall, longest call of ours, seconds in all")
+                    for stage, seconds in stalls(window).items():
+                        print(f"  {stage:20}", *(f"{each:8.3f}" for each in seconds), flush=True)
         finally:
             window.close()
 

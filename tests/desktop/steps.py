@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a person does with Afterlight in the window, and how the pictures are had and compared."""
 
+import time
+
 import numpy as np
 import OpenEXR
 
@@ -39,6 +41,22 @@ def tick(window, on=True):
     window.point_at(ENABLED)
     window.click()
     window.wait(f"bpy.context.scene.afterlight.enabled == {on}")
+
+
+def long_gather(width=640, height=360):
+    """So much light that its gather takes some seconds, and as little as can be for EEVEE."""
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.eevee.taa_render_samples = 1
+    scene.afterlight.start, scene.afterlight.samples, scene.afterlight.radius = "FULL", 1024, 32
+
+
+def into_the_gather(window):
+    """Render, until it is in the middle of long_gather()."""
+    window.value("watch('gather', 'light.pipeline', 'gather')")
+    window.start_render()
+    window.wait("'gather' in running()", 120)
+    time.sleep(1)
 
 
 def save_as(path):

@@ -64,7 +64,7 @@ class Window:
             self.blender = computer.start(
                 "stdbuf", "-oL", "blender", "--gpu-backend", computer.backend, "--window-geometry", 0, 0, WIDTH, HEIGHT,
                 *arguments, "--python", HERE / "inside.py", stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                pass_fds=[theirs.fileno()], env={
+                pass_fds=[theirs.fileno()], env=self.display | {
                     "AFTERLIGHT_CONTROL": str(theirs.fileno()),
                     "AFTERLIGHT_TESTS": os.pathsep.join(map(str, [HERE.parent, ROOT / "tools"]))})
         self.socket, self.received = ours, b""
@@ -77,7 +77,7 @@ class Window:
             pass_fds=[theirs], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(theirs)
         with os.fdopen(number) as answer:
-            self.computer.environment["DISPLAY"] = ":" + answer.readline().strip()
+            self.display = {"DISPLAY": ":" + answer.readline().strip()}
 
     # Python in the window's Blender
 
@@ -116,7 +116,7 @@ class Window:
     # Mouse, keys and eyes
 
     def xdotool(self, *arguments):
-        self.computer.call("xdotool", *arguments)
+        return self.computer.call("xdotool", *arguments, env=self.display)
 
     def move(self, x, y):
         """The mouse to a place in the window, counted from the bottom left as Blender does."""
@@ -134,10 +134,14 @@ class Window:
     def key(self, *keys):
         self.xdotool("key", *(key.replace("F12", F12) for key in keys))
 
-    def picture(self, name):
-        """A picture of the screen, kept in the folder of the run; its path."""
+    def picture(self, name, kind=None):
+        """A picture of the screen, or of the largest editor of a kind, kept in the folder of the run; its path."""
         path = self.computer.folder / f"{name}.png"
-        self.computer.call("import", "-window", "root", path)
+        cut = []
+        if kind:
+            x, y, width, height = self.value(f"box({kind!r})")
+            cut = ["-crop", f"{width}x{height}+{x}+{HEIGHT - y - height}", "+repage"]
+        self.computer.call("import", "-window", "root", *cut, path, env=self.display)
         return path
 
     def point_at(self, data_path, along=36, kind="PROPERTIES"):
