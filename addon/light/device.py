@@ -165,7 +165,8 @@ class Texture:
         self.width, self.height, self.format = handle.width, handle.height, handle.format
 
     def __del__(self):
-        place.later([vars(self).pop("handle", None)].clear)  # the list alone knows it by then
+        if place is not None:  # Python is not ending
+            place.later([vars(self).pop("handle", None)].clear)  # the list alone knows it by then
 
     @on_gpu
     def read(self):
