@@ -25,7 +25,9 @@ def manual_map():
     return PATH.as_uri(), (*sections, (f"bpy.types.{AfterlightSettings.__name__}*".lower(), ""),
                            ("bpy.ops.afterlight.preset_add*", "#presets"), ("bpy.ops.afterlight.mend*", "#messages"),
                            ("bpy.ops.afterlight.repair*", "#messages"), ("bpy.ops.afterlight.update*", "#update"),
-                           ("bpy.ops.afterlight.free_passes*", "#update"), ("bpy.ops.afterlight.*", "#menu"))
+                           ("bpy.ops.afterlight.free_passes*", "#update"), ("bpy.ops.afterlight.place_views*", "#views"),
+                           ("bpy.ops.afterlight.view_*", "#views"),
+                           ("bpy.ops.afterlight.*", "#menu"))
 
 
 def register():

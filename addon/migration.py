@@ -10,11 +10,12 @@ from bpy.app.handlers import persistent
 from . import settings
 
 DEFAULTS_OF_0_1_0 = {
+    "method": "PAPER", "views": "CAMERA",  # all that there was
     "strength": 1.0, "start": "HALF", "samples": 256, "radius": 16, "seed": 0, "use_animated_seed": False}
 
 
 def _store_defaults(old):
-    """0.1.0 stored only what differed from its defaults. Since then a file holds every setting."""
+    """0.1.0 stored only what differed from its defaults, and knew one method. Since then a file holds every setting."""
     settings.store_all(old, DEFAULTS_OF_0_1_0)
 
 

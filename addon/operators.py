@@ -106,6 +106,7 @@ class AFTERLIGHT_OT_reset(_OnEditableScene, Operator):
     def execute(self, context):
         for parameter in PARAMETERS:
             context.scene.afterlight.property_unset(parameter.name)
+        wiring.connect_if_enabled(context.scene)
         _warn_of_animation(self, context.scene)
         return {"FINISHED"}
 
@@ -133,7 +134,7 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
     preset_defines = ["settings = bpy.context.scene.afterlight"]
     # Strength and seed belong to the shot, not to the quality.
     preset_values = [f"settings.{parameter.name}" for parameter in PARAMETERS
-                     if parameter.name in {"start", "samples", "radius"}]
+                     if parameter.name not in {"strength", "seed", "use_animated_seed"}]
 
 
 def other_scenes(scene):

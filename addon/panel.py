@@ -46,6 +46,7 @@ class AFTERLIGHT_MT_indirect_light(Menu):
         layout.menu("AFTERLIGHT_MT_copy_settings")
         layout.operator("afterlight.reset", text="Reset Settings")
         layout.operator("afterlight.repair")
+        layout.operator("afterlight.place_views")
         layout.separator()
         layout.operator("afterlight.help", icon="QUESTION").section = ""
 
@@ -91,6 +92,7 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
                 _draw_finding(layout, finding, context)
         column = layout.column()
         column.active = settings.enabled
+        column.prop(settings, "method")
         column.prop(settings, "strength")
         row = layout.row(align=True)
         row.operator("afterlight.update", icon="FILE_REFRESH")
@@ -107,8 +109,13 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
         layout.active = settings.enabled
         column = layout.column()
         column.prop(settings, "start")
-        column.prop(settings, "samples")
-        column.prop(settings, "radius")
+        if settings.method == "PAPER":
+            column.prop(settings, "samples")
+            column.prop(settings, "radius")
+        else:
+            column.prop(settings, "draws")
+            column.prop(settings, "bounces")
+            column.prop(settings, "use_visibility")
         column = layout.column(align=True)
         column.active = not light.is_exact(light_settings(settings, 0))
         column.prop(settings, "seed")

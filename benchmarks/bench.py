@@ -22,7 +22,7 @@ import session  # noqa: E402
 from . import report  # noqa: E402
 
 PAGE = ROOT / "docs" / "bench.md"
-PRESETS = ("draft", "paper", "production")
+PRESETS = ("draft", "paper", "production", "reference")
 OWN_FRAMES = 7               # for Afterlight's own time, at one EEVEE sample each: it does not depend on them
 MEMORY_SIZE = 1920, 1080
 MEMORY_FRAMES = 3
@@ -66,6 +66,7 @@ def use_preset(name, afterlight):
 def measure_own(scene, stages_of):
     """Frames with the box unticked and ticked in turn, the first pair apart: it compiles EEVEE's shaders and ours."""
     scene.afterlight.property_unset("radius")
+    scene.afterlight.method = "PAPER"
     scene.afterlight.start, scene.afterlight.samples = "QUARTER", 64
     plain, lit, stages = [], [], []
     for _ in range(1 + OWN_FRAMES):
@@ -85,7 +86,10 @@ def measure_presets(scene, names, afterlight, stages_of):
     for name in names:
         use_preset(name, afterlight)
         render(scene)
-        found[name] = report.Preset(settings.start.title(), settings.samples, settings.radius, stages_of(scene))
+        frame = render(scene)
+        samples = settings.samples if settings.method == "PAPER" else settings.draws
+        found[name] = report.Preset(settings.method.title(), settings.start.title(), samples, stages_of(scene),
+                                    frame.wall)
     return found
 
 

@@ -118,6 +118,10 @@ class Texture:
     def __del__(self):
         self.own.release()
 
+    def clear(self, *, format, value):
+        components, kind = FORMATS[self.format]
+        self.own.write(np.full((self.height, self.width, components), value[:components], kind).tobytes())
+
     def read(self):
         components, kind = FORMATS[self.format]
         pixels = np.frombuffer(self.own.read(alignment=1), kind).reshape(self.height, self.width, components)
@@ -137,15 +141,16 @@ class CreateInfo:
 
     def __init__(self):
         self.types, self.defines, self.resources, self.layout, self.source = "", "", "", "", ""
-        self.samplers, self.images = {}, {}
+        self.blocks, self.samplers, self.images = {}, {}, {}
 
     def typedef_source(self, text):
-        self.types += text
+        self.types = text  # Blender keeps the last
 
     def define(self, name, value=""):
         self.defines += f"#define {name} {value}\n"
 
     def uniform_buf(self, slot, kind, name):
+        self.blocks[name] = slot
         self.resources += f"layout(std140, binding = {slot}) uniform {name}_block {{ {kind} {name}; }};\n"
 
     def sampler(self, slot, kind, name):
@@ -181,7 +186,7 @@ class Shader:
         Shader.bound = self
 
     def uniform_block(self, name, buffer):
-        buffer.own.bind_to_uniform_block(0)
+        buffer.own.bind_to_uniform_block(self.info.blocks[name])
 
     def uniform_sampler(self, name, texture):
         texture.own.use(self.info.samplers[name])

@@ -100,18 +100,18 @@ class Soak:
         scene, engine, light = self.scene, self.afterlight.pipeline.engine, self.afterlight.light
         scene.afterlight.seed, scene.afterlight.strength = number, 0.5 + number % 4
         scene.eevee.use_raytracing = event == "ray tracing"
-        gather = light.gather_indirect
+        gathers = light.gather_indirect, light.gather_views
         if event == "cancelled":  # as Escape does
             engine.AfterlightEngine.test_break = lambda engine: True
         elif event == "no GPU":
-            light.gather_indirect = self._fail
+            light.gather_indirect = light.gather_views = self._fail
         try:
             if event == "again" and self.ticked:
                 bpy.ops.afterlight.update()
             else:
                 self.scenes.render(scene, folder / "picture.exr")
         finally:
-            light.gather_indirect = gather
+            light.gather_indirect, light.gather_views = gathers
             if event == "cancelled":
                 del engine.AfterlightEngine.test_break
         expected = self.ticked and event in ("ray tracing", "no GPU")
@@ -133,6 +133,9 @@ class Soak:
                     node.layer = layer.name
         scene.render.resolution_x, scene.render.resolution_y = size
         settings.start, settings.samples, settings.radius = start, samples, radius
+        # Both methods, and views that come and go: with few samples Radiosity.
+        settings.method, settings.views = ("RADIOSITY", "AUTOMATIC") if samples < 65 else ("PAPER", "CAMERA")
+        settings.view_count, settings.draws = 2, 4
         ticked = self.ticked and event != "unticked"
         if settings.enabled != ticked:
             settings.enabled = ticked

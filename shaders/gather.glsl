@@ -2,23 +2,6 @@
 // Gather: the irradiance that each texel of every level receives from a region of its own level around it. Only the
 // part of the table of offsets differs between levels: a disk at the finest, a ring elsewhere.
 
-// The PCG generator of M. O'Neill (HMC-CS-2014-0905), the variant RXS-M-XS with 32 bits of state.
-uint pcg_next(uint state)
-{
-  return state * 747796405u + 2891336453u;
-}
-
-uint pcg_output(uint state)
-{
-  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-  return (word >> 22u) ^ word;
-}
-
-uint pcg_hash(uint value)
-{
-  return pcg_output(pcg_next(value));
-}
-
 // Entry of the table for sample k: any of the k-th part of it, all alike. `part` is its length in 1 / 65536 entries.
 // With as many samples as entries this is entry k itself, the exhaustive sum.
 uint stratum(uint k, uint part, uint random)

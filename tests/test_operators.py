@@ -26,7 +26,8 @@ def addon(afterlight):
 
 def test_settings_go_to_other_scenes(scene, addon):
     settings, names = scene.afterlight, [parameter.name for parameter in addon.settings.PARAMETERS]
-    mine = dict(strength=0.5, start="QUARTER", samples=100, radius=9, seed=3, use_animated_seed=True)
+    mine = dict(method="RADIOSITY", strength=0.5, start="QUARTER", samples=100, radius=9, draws=5, bounces=2,
+                use_visibility=False, views="AUTOMATIC", view_count=2, seed=3, use_animated_seed=True)
     assert sorted(mine) == sorted(names)
     assert not bpy.ops.afterlight.copy_settings.poll(), "there is no other scene"
     for name, value in mine.items():
@@ -48,7 +49,9 @@ def test_settings_go_to_other_scenes(scene, addon):
 
 def test_reset_gives_the_defaults_and_names_what_is_animated(scene, addon, capfd):
     settings = scene.afterlight
+    settings.property_unset("method")
     defaults = {parameter.name: getattr(settings, parameter.name) for parameter in addon.settings.PARAMETERS}
+    settings.method, settings.views, settings.draws, settings.bounces = "PAPER", "CAMERA", 3, 8
     settings.strength, settings.start, settings.samples, settings.radius, settings.seed = 0.5, "FULL", 99, 9, 3
     settings.use_animated_seed = settings.enabled = True
     assert bpy.ops.afterlight.reset() == {"FINISHED"}
@@ -90,7 +93,8 @@ def test_search_finds_what_the_menus_hold(scene, addon):
             elif kind == "operator":
                 found.add(arguments[0])
     everything = {f"afterlight.{name}" for name in dir(bpy.ops.afterlight)}
-    internal = {"afterlight.mend", "afterlight.preset_add"}  # with a button of their own beside what they are for
+    # With a button of their own beside what they are for.
+    internal = {f"afterlight.{name}" for name in ("mend", "preset_add", "view_add", "view_remove")}
     assert found >= everything - internal
 
 
@@ -108,18 +112,19 @@ def test_presets_are_added_and_removed_as_blenders_own(scene, addon):
     settings, menu = scene.afterlight, addon.panel.AFTERLIGHT_PT_presets
 
     def quality():
-        return settings.start, settings.samples, settings.radius
+        return settings.method, settings.start, settings.samples, settings.radius, settings.draws, settings.view_count
 
     shipped = bpy.utils.preset_find("draft", "afterlight")
     settings.start, settings.samples, settings.radius, settings.strength = "FULL", 123, 21, 0.3
+    mine = quality()
     assert bpy.ops.afterlight.preset_add(name="My Shot") == {"FINISHED"}
     path = Path(bpy.utils.preset_find("My_Shot", "afterlight"))
     assert path.is_relative_to(bpy.utils.user_resource("SCRIPTS")), "not in the add-on's own folder"
     assert bpy.ops.afterlight.preset_add(name="My Shot") == {"CANCELLED"}, "the name is taken"
     bpy.ops.script.execute_preset(filepath=shipped, menu_idname="AFTERLIGHT_PT_presets")
-    assert quality() == ("QUARTER", 64, 8)
+    assert quality() == ("RADIOSITY", "QUARTER", 123, 21, 8, 4)
     bpy.ops.script.execute_preset(filepath=str(path), menu_idname="AFTERLIGHT_PT_presets")
-    assert quality() == ("FULL", 123, 21) and settings.strength == pytest.approx(0.3)
+    assert quality() == mine and settings.strength == pytest.approx(0.3)
     assert menu.bl_label == "My Shot"
     assert bpy.ops.afterlight.preset_add(name="My Shot", remove_name=True) == {"FINISHED"} and not path.exists()
     assert bpy.ops.afterlight.preset_add(name="draft", remove_name=True) == {"CANCELLED"} and Path(shipped).exists()
@@ -144,7 +149,9 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
     scene.render.filepath = str(tmp_path / "frame_")
     keyed = {"strength": (1.0, 0.5, 0.25), "start": ("QUARTER", "HALF", "FULL"), "samples": (16, 32, 64),
              "radius": (4, 6, 8), "seed": (1, 5, 9), "use_animated_seed": (False, True, False)}
-    assert keyed.keys() == {parameter.name for parameter in addon.settings.PARAMETERS}
+    radiosity = {"draws": (1, 2, 3), "bounces": (1, 2, 3), "use_visibility": (True, False, True)}
+    wiring = {"method", "views", "view_count"}  # they decide which scenes there are, and stay as they are
+    assert keyed.keys() | radiosity.keys() | wiring == {parameter.name for parameter in addon.settings.PARAMETERS}
     for name, values in keyed.items():
         for frame, value in enumerate(values, 1):
             setattr(settings, name, value)
@@ -165,3 +172,18 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
     bpy.ops.render.render(animation=True)
     assert [(each.strength, each.start, each.samples, each.radius, each.seed) for each in seen] == [
         (near(0.25), 1, 16, 4, 101), (near(0.5), 2, 32, 5, 102 + 2 * 7919), (near(0.75), 4, 48, 6, 103)]
+
+    seen.clear()
+    scene.animation_data_clear()
+    monkeypatch.setattr(addon.pipeline.engine.light, "gather_views", lambda views, settings, **_: seen.append(settings))
+    settings.method, settings.views = "RADIOSITY", "CAMERA"
+    for name, values in radiosity.items():
+        for frame, value in enumerate(values, 1):
+            setattr(settings, name, value)
+            assert settings.keyframe_insert(name, frame=frame), name
+    scene.frame_set(1)
+    bpy.ops.render.render(animation=True)
+    assert [(each.groups, each.bounces, each.visibility) for each in seen] == [(1, 1, True), (2, 2, False), (3, 3, True)]
+    for name in wiring:
+        with pytest.raises(TypeError, match="not animatable"):
+            settings.keyframe_insert(name)

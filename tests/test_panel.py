@@ -25,13 +25,21 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
     panel = addon.panel
 
     def settings():
-        return [*drawn(panel.AFTERLIGHT_PT_indirect_light), *drawn(panel.AFTERLIGHT_PT_sampling)]
+        return [*drawn(panel.AFTERLIGHT_PT_indirect_light), *drawn(panel.AFTERLIGHT_PT_sampling),
+                *(drawn(addon.views_panel.AFTERLIGHT_PT_views)
+                  if addon.views_panel.AFTERLIGHT_PT_views.poll(bpy.context) else ())]
 
     names = {parameter.name for parameter in addon.settings.PARAMETERS}
-    assert {arguments[1] for kind, arguments, _, _ in settings() if kind == "prop"} == names
-    assert greyed(settings()) == names, "nothing applies before the box is ticked"
+    paper, radiosity = {"samples", "radius"}, {"draws", "bounces", "use_visibility", "views", "view_count"}
+    for method, others in (("RADIOSITY", paper), ("PAPER", radiosity)):
+        scene.afterlight.method = method
+        assert {arguments[1] for kind, arguments, _, _ in settings() if kind == "prop"} == names - others
+        assert greyed(settings()) == names - others, "nothing applies before the box is ticked"
     scene.afterlight.enabled = True
     assert not greyed(settings())
+    scene.afterlight.method, scene.afterlight.views = "RADIOSITY", "CAMERA"
+    assert greyed(settings()) == {"view_count"}, "there are no further views"
+    scene.afterlight.method = "PAPER"
     scene.afterlight.samples, scene.afterlight.radius = 256, 8
     assert greyed(settings()) == {"seed", "use_animated_seed"}, "every texel is visited: there is no noise"
     ((_, arguments, _, _),) = drawn(panel.AFTERLIGHT_PT_indirect_light, "draw_header")

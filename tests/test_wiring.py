@@ -239,9 +239,9 @@ def test_presets_set_quality_and_nothing_else(scene, afterlight):
     folder = bpy.utils.preset_paths("afterlight")
     assert folder
     seen = set()
-    for name in ("draft", "paper", "production"):
+    for name in ("draft", "paper", "production", "reference"):
         path = bpy.utils.preset_find(name, "afterlight")
         assert path, name
         bpy.ops.script.execute_preset(filepath=path, menu_idname="AFTERLIGHT_PT_presets")
-        seen.add((settings.start, settings.samples, settings.radius))
-    assert len(seen) == 3 and (settings.strength, settings.seed) == (0.5, 7)
+        seen.add((settings.method, settings.start, settings.draws, settings.bounces, settings.views))
+    assert len(seen) == 4 and (settings.strength, settings.seed) == (0.5, 7)

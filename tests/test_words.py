@@ -71,8 +71,9 @@ def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     anchors = Anchors(path.read_text()).ids
     sections = [section for _, section in opened]
     assert sections[:2] == ["", "samples"]
-    assert sections[2:9] == [*(parameter.name for parameter in addon.settings.PARAMETERS), "enabled"]
-    assert len(sections) == 9 + len(operators) and set(sections[1:]) <= set(anchors)
+    first = 3 + len(addon.settings.PARAMETERS)
+    assert sections[2:first] == [*(parameter.name for parameter in addon.settings.PARAMETERS), "enabled"]
+    assert len(sections) == first + len(operators) and set(sections[1:]) <= set(anchors)
 
 
 def test_the_page_of_help_is_whole(addon):
@@ -82,7 +83,8 @@ def test_the_page_of_help_is_whole(addon):
     assert all(link.startswith("#") and link[1:] in page.ids for link in page.links), "nothing needs a network"
     for parameter in addon.settings.PARAMETERS:
         assert f">{parameter.label} <" in text, parameter.label
-    for _, label, *_ in addon.settings.PARAMETERS[1].options["items"]:
+    start = next(parameter for parameter in addon.settings.PARAMETERS if parameter.name == "start")
+    for _, label, *_ in start.options["items"]:
         assert f"<th>{label}</th>" in text
     for preset in (ADDON / "presets" / "afterlight").glob("*.py"):
         values = re.findall(r"= (\d+)", preset.read_text())
@@ -97,7 +99,7 @@ def rna_texts(addon):
     kinds = [kind for base in (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu) for kind in base.__subclasses__()
              if kind.__module__.startswith(extension.MODULE)]
     assert {kind.__name__ for kind in kinds} >= {"AFTERLIGHT_OT_update", "AFTERLIGHT_PT_sampling"}
-    properties = list(addon.settings.AfterlightSettings.bl_rna.properties)
+    properties = [*addon.settings.AfterlightSettings.bl_rna.properties, *addon.settings.AfterlightView.bl_rna.properties]
     for kind in kinds:
         yield getattr(kind, "bl_description", "")
         if issubclass(kind, bpy.types.Operator):

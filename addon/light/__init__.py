@@ -6,9 +6,11 @@ docs/method.md.
 """
 
 from .device import GpuUnavailable, release
-from .inputs import Camera, Passes, Settings
+from .inputs import FARTHEST, Camera, Draws, Passes, Settings, View
 from .memory import gpu_bytes, is_exact
 from .pipeline import (Cancelled, Pyramid, composite, gather, gather_indirect, merge, pack, upload, upsample)
+from .views import gather_views
 
-__all__ = ["Camera", "Cancelled", "GpuUnavailable", "Passes", "Pyramid", "Settings", "composite", "gather",
-           "gather_indirect", "gpu_bytes", "is_exact", "merge", "pack", "release", "upload", "upsample"]
+__all__ = ["FARTHEST", "Camera", "Cancelled", "Draws", "GpuUnavailable", "Passes", "Pyramid", "Settings", "View",
+           "composite", "gather", "gather_indirect", "gather_views", "gpu_bytes", "is_exact", "merge", "pack", "release",
+           "upload", "upsample"]

@@ -15,6 +15,10 @@ import numpy as np
 
 from .region import MOST_LEVELS, TABLE_WIDTH
 
+MOST_VIEWS = 10            # the main one among them
+RECORDS_WIDTH = 256        # records in a row of a texture
+DRAWS_WIDTH = 1024         # entries in a row of the table that emitters are drawn from
+
 SHADERS = Path(__file__).resolve().parents[2] / "shaders"
 # Threads of a work group, (x, y). Passes over full rows read a dozen textures and want long runs of each: squares would
 # miss the cache at every row.
@@ -57,15 +61,45 @@ struct Parameters {{
 }};
 """
 
+# The cameras of several views and what is drawn from them; world space has the main camera's place as its origin.
+VIEWS = np.dtype([
+    ("rotation", np.float32, (MOST_VIEWS, 3, 4)),   # rows: world to view
+    ("projection", np.float32, (MOST_VIEWS, 4)),    # scale x, y; offset x, y, for texels of the depth map
+    ("eye", np.float32, (MOST_VIEWS, 4)),           # place; 1 if orthographic
+    ("emitters", np.int32, (MOST_VIEWS, 4)),        # number of the first; across, up; pixels along the side of one
+    ("receivers", np.int32, (MOST_VIEWS, 4)),       # the same
+    ("depths", np.int32, 4),                        # width, height of a view's depth map; pixels along a texel; views
+    ("draws", np.int32, 4),                         # groups; candidates of each; entries of the table; steps of a way
+    ("odds", np.float32, 4),                        # chance of an emitter: x times power plus y, times its area
+])
+VIEWS_GLSL = f"""
+struct Views {{
+  vec4 rotation[{3 * MOST_VIEWS}];
+  vec4 projection[{MOST_VIEWS}];
+  vec4 eye[{MOST_VIEWS}];
+  ivec4 emitters[{MOST_VIEWS}];
+  ivec4 receivers[{MOST_VIEWS}];
+  ivec4 depths;
+  ivec4 draws;
+  vec4 odds;
+}};
+"""
+
 
 @dataclass(frozen=True)
 class Pass:
-    """One shader: the files it is made of, in order, and the textures it reads and writes."""
+    """One shader: the files it is made of, in order, and the textures it reads and writes, the latter in a format."""
 
     files: tuple[str, ...]
     reads: tuple[str, ...]
     writes: str
     group: tuple[int, int] = SQUARE
+    format: str = "RGBA32F"
+
+    @property
+    def knows_views(self) -> bool:
+        """Whether it has the Views block beside the Parameters."""
+        return "views" in self.files
 
 
 SURFACE_CHANNELS = ("depth_pass", "normal_x", "normal_y", "normal_z")
@@ -76,10 +110,21 @@ PASSES = {
     "pack_with_normals": Pass(("camera", "surfel", "geometric", "pack"),
                               SURFACE_CHANNELS + COLOR_CHANNELS + LIGHT_CHANNELS, "surfels_out", STRIP),
     "merge": Pass(("camera", "surfel", "tiles", "merge"), (), "surfels_out"),
-    "gather": Pass(("camera", "surfel", "tiles", "gather"), ("surfels", "offsets"), "irradiance_out"),
+    "gather": Pass(("camera", "surfel", "tiles", "random", "gather"), ("surfels", "offsets"), "irradiance_out"),
     "upsample": Pass(("camera", "surfel", "bilateral", "upsample"), ("surfels", "irradiance"), "total_out"),
     "composite": Pass(("camera", "surfel", "bilateral", "composite"),
                       (*SURFACE_CHANNELS, *COLOR_CHANNELS, "surfels", "total"), "indirect_out", STRIP),
+    "depths": Pass(("camera", "views", "depths"), SURFACE_CHANNELS, "depths_out", format="RG32F"),
+    "emit": Pass(("camera", "views", "sight", "emit"), (*SURFACE_CHANNELS, *COLOR_CHANNELS, *LIGHT_CHANNELS, "depths"),
+                 "records_out"),
+    "emit_with_normals": Pass(("camera", "views", "sight", "geometric", "emit"),
+                              (*SURFACE_CHANNELS, *COLOR_CHANNELS, *LIGHT_CHANNELS, "depths"), "records_out"),
+    "radiate": Pass(("camera", "views", "radiate"), ("emitters", "irradiance"), "radiance_out"),
+    "draw_blocks": Pass(("camera", "views", "sight", "random", "receiver_block", "draw"),
+                        ("receivers", "emitters", "radiance", "table", "depths"), "irradiance_out"),
+    "draw_base": Pass(("camera", "surfel", "views", "sight", "random", "receiver_base", "draw"),
+                      ("surfels", "emitters", "radiance", "table", "depths"), "irradiance_out"),
+    "smooth": Pass(("camera", "surfel", "bilateral", "smooth"), ("surfels", "irradiance"), "total_out"),
     "probe": Pass(("probe",), ("source",), "probed_out"),
     "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }
@@ -120,7 +165,8 @@ class Texture:
         self.width, self.height, self.format = handle.width, handle.height, handle.format
 
     def __del__(self):
-        place.later([vars(self).pop("handle", None)].clear)  # the list alone knows it by then
+        if place is not None:  # Python is not ending
+            place.later([vars(self).pop("handle", None)].clear)  # the list alone knows it by then
 
     @on_gpu
     def read(self):
@@ -138,6 +184,11 @@ def parameters(**values) -> np.ndarray:
         value = np.asarray(value)
         block[name][tuple(slice(extent) for extent in value.shape)] = value
     return block
+
+
+def as_int32(seed: int) -> int:
+    """The lowest 32 bits of any integer, as the signed number of the same bits."""
+    return (seed & 0xFFFFFFFF) - ((seed & 0x80000000) << 1)
 
 
 @on_gpu
@@ -169,9 +220,14 @@ def shader(name: str) -> gpu.types.GPUShader:
     """The compiled pass, kept until release(). Raises GpuUnavailable where it does not compile."""
     made_of = PASSES[name]
     info = gpu.types.GPUShaderCreateInfo()
-    info.typedef_source(PARAMETERS_GLSL)
+    # One call: a second would put its text in place of the first's.
+    info.typedef_source(PARAMETERS_GLSL + VIEWS_GLSL * made_of.knows_views)
     info.uniform_buf(0, "Parameters", "parameters")
     info.define("OFFSETS_WIDTH", str(TABLE_WIDTH))
+    if made_of.knows_views:
+        info.uniform_buf(1, "Views", "views")
+        info.define("RECORDS_WIDTH", str(RECORDS_WIDTH))
+        info.define("DRAWS_WIDTH", str(DRAWS_WIDTH))
     if made_of.files == ("probe",):
         info.define("SOURCE", made_of.reads[0])
     for slot, sampler in enumerate(made_of.reads):
@@ -179,7 +235,7 @@ def shader(name: str) -> gpu.types.GPUShader:
     if made_of.writes in SURFELS:
         info.image(0, SURFEL_FORMAT, "UINT_2D", made_of.writes, qualifiers={"READ", "WRITE"})
     else:
-        info.image(0, "RGBA32F", "FLOAT_2D", made_of.writes, qualifiers={"WRITE"})
+        info.image(0, made_of.format, "FLOAT_2D", made_of.writes, qualifiers={"WRITE"})
     info.local_group_size(*made_of.group, 1)
     info.compute_source("\n".join((SHADERS / f"{file}.glsl").read_text() for file in ("common", *made_of.files)))
     try:
@@ -195,12 +251,15 @@ def release() -> None:
 
 
 @on_gpu
-def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, int]) -> None:
-    """Run a pass in (x, y) work groups; textures by the names in PASSES."""
+def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, int], views: np.ndarray | None = None) -> None:
+    """Run a pass in (x, y) work groups; textures by the names in PASSES; views: a Views block where it knows them."""
     made_of, program = PASSES[name], shader(name)
     uniforms = gpu.types.GPUUniformBuf(block.tobytes())  # one a dispatch: an earlier one may still be in use
     program.bind()
     program.uniform_block("parameters", uniforms)
+    if made_of.knows_views:
+        cameras = gpu.types.GPUUniformBuf(views.tobytes())
+        program.uniform_block("views", cameras)
     for sampler in made_of.reads:
         program.uniform_sampler(sampler, textures[sampler].handle)
     program.image(made_of.writes, textures[made_of.writes].handle)

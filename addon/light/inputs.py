@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the gather is given: a camera, EEVEE's passes and the settings. Plain numpy, no GPU."""
 
-from dataclasses import dataclass, fields
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -19,13 +20,14 @@ class Camera:
     at planar depth z (metres, above 0) is (q.x z, q.y z, -z) in perspective and (q.x, q.y, -z) in orthographic.
 
     rotation: (3, 3) float64, world to view. scale, offset: (2,) float64, in view units at depth 1 (perspective) or
-    metres (orthographic).
+    metres (orthographic). position: (3,) float64, world, metres; matters where there are several views.
     """
 
     rotation: np.ndarray
     scale: np.ndarray
     offset: np.ndarray
     orthographic: bool = False
+    position: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass(eq=False)
@@ -67,6 +69,44 @@ class Passes:
         counts = {name: int(np.count_nonzero(~np.logical_and.reduce([np.isfinite(array) for array in arrays])))
                   for name, arrays in self.channels().items()}
         return {name: count for name, count in counts.items() if count}
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A picture of the scene that sends light, and the camera that saw it. source: its Passes, or a function that loads
+    them: each is needed only for a moment, and they are large."""
+
+    source: Passes | Callable[[], Passes]
+    camera: Camera
+
+    @property
+    def passes(self) -> Passes:
+        """The passes, loaded again each time where they have to be."""
+        return self.source() if callable(self.source) else self.source
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Settings of the light between several views.
+
+    start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: draws of a base texel whose way is
+    looked along; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and more. visibility:
+    whether surfaces hide what lies behind them. seed, strength: as in Settings. Raises ValueError for anything else."""
+
+    start: int
+    groups: int = 16
+    candidates: int = 16
+    bounces: int = 4
+    visibility: bool = True
+    seed: int = 0
+    strength: float = 1.0
+
+    def __post_init__(self):
+        if self.start not in (1, 2, 4):
+            raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {self.start}")
+        if min(self.groups, self.candidates, self.bounces) < 1:
+            raise ValueError(f"Groups, candidates and bounces are 1 or more, not {self.groups}, {self.candidates}, "
+                             f"{self.bounces}")
 
 
 @dataclass(frozen=True)

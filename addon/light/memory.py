@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a frame takes on the GPU, from its size and settings alone."""
 
-from .inputs import Settings
+from . import views
+from .inputs import Draws, Settings
 from .region import TABLE_WIDTH, level_boxes, offsets
 
 TEXEL = 16                 # bytes of RGBA32F and RGBA32UI
 PASSES, LIGHT = 13, 6      # channels that are uploaded, and those of them that go once the surfels are packed
 
 
-def gpu_bytes(width: int, height: int, settings: Settings) -> int:
-    """Bytes of textures that gather_indirect() has on the GPU at its fullest, for a frame of width x height pixels."""
+def gpu_bytes(width: int, height: int, settings: Settings | Draws, further: int = 0) -> int:
+    """Bytes of textures that gather_indirect(), or gather_views() with so many further views, has on the GPU at its
+    fullest, for a frame of width x height pixels."""
+    if isinstance(settings, Draws):
+        return views.gpu_bytes(width, height, settings, further)
     channel = -(-width // 4) * height * TEXEL
     boxes = level_boxes(-(-width // settings.start), -(-height // settings.start), settings.radius)
     pyramid = max(x + w for x, _, w, _ in boxes) * max(y + h for _, y, _, h in boxes) * TEXEL
@@ -21,7 +25,9 @@ def gpu_bytes(width: int, height: int, settings: Settings) -> int:
     return max(packing, lit + table, lit + base + 3 * channel)
 
 
-def is_exact(settings: Settings) -> bool:
+def is_exact(settings: Settings | Draws) -> bool:
     """Whether every texel visits all of its region, so that there is no noise and the seed means nothing."""
+    if isinstance(settings, Draws):
+        return False
     disk, ring = (len(offsets(settings.radius, finest)) for finest in (True, False))
     return not settings.samples or settings.samples >= disk and 2 * settings.samples >= ring

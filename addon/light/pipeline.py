@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import device
-from .inputs import Camera, Passes, Settings
+from .inputs import Camera, Draws, Passes, Settings
 from .region import TABLE_WIDTH, level_boxes, offsets, samples_at
 
 Texture = device.Texture
@@ -44,11 +44,13 @@ class Pyramid:
         return across * up
 
 
-def upload(passes: Passes, broken: dict[str, int] | None = None) -> dict[str, Texture]:
+def upload(passes: Passes, broken: dict[str, int] | None = None, light: bool = True) -> dict[str, Texture]:
     """One texture a channel, named as the shaders name them, with four neighbouring pixels of a row in each texel; rows
-    are filled up with background. broken: filled with Passes.broken()."""
-    groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal), device.COLOR_CHANNELS: passes.diffuse_color,
-              device.LIGHT_CHANNELS: (*passes.diffuse_direct, *passes.emission)}
+    are filled up with background. broken: filled with Passes.broken(). light: or only depth and normal."""
+    groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal)}
+    if light:
+        groups |= {device.COLOR_CHANNELS: passes.diffuse_color,
+                   device.LIGHT_CHANNELS: (*passes.diffuse_direct, *passes.emission)}
     width, height = passes.size
     quads = -(-width // 4)
     plane = np.zeros((height, 4 * quads), np.float32)  # one for all: new memory for each takes longer than the copy
@@ -64,10 +66,12 @@ def upload(passes: Passes, broken: dict[str, int] | None = None) -> dict[str, Te
     return textures
 
 
-def pack(channels: dict[str, Texture], passes: Passes, camera: Camera, settings: Settings) -> Pyramid:
-    """The pyramid's base, from the passes' uploaded channels; its coarser levels have their place, and are empty."""
+def pack(channels: dict[str, Texture], passes: Passes, camera: Camera, settings: Settings | Draws) -> Pyramid:
+    """The pyramid's base, from the passes' uploaded channels; its coarser levels have their place, and are empty. Draws
+    need none."""
     width, height = passes.size
-    boxes = level_boxes(-(-width // settings.start), -(-height // settings.start), settings.radius)
+    base = -(-width // settings.start), -(-height // settings.start)
+    boxes = level_boxes(*base, settings.radius) if isinstance(settings, Settings) else [(0, 0, *base)]
     surfels = device.texture(max(x + w for x, _, w, _ in boxes), max(y + h for _, y, _, h in boxes),
                              device.SURFEL_FORMAT)
     block = device.parameters(
@@ -106,7 +110,7 @@ def gather(pyramid: Pyramid, settings: Settings, after_band=lambda done: None) -
         samples = samples_at(level, settings.samples, len(region))
         block["regions"].view(np.uint32)[level] = samples, first, len(region), (len(region) << 16) // samples
         costs.append(np.full(pyramid.groups(level), device.SQUARE[0] * device.SQUARE[1] * samples))
-    block["band"][1] = _as_int32(settings.seed)
+    block["band"][1] = device.as_int32(settings.seed)
     done = np.cumsum(np.concatenate(costs))
     irradiance = device.texture(pyramid.surfels.width, pyramid.surfels.height)
     textures = {"surfels": pyramid.surfels, "offsets": _table(disk, ring), "irradiance_out": irradiance}
@@ -153,7 +157,7 @@ def gather_indirect(passes: Passes, camera: Camera, settings: Settings, *, progr
     asking for them waits for the GPU after every stage. broken: filled with Passes.broken().
     Raises GpuUnavailable where the GPU cannot do it.
     """
-    lap = _stopwatch(timings)
+    lap = stopwatch(timings)
 
     def report(stage, fraction):
         if progress(stage, fraction):
@@ -192,12 +196,7 @@ def _table(*regions: np.ndarray) -> Texture:
     return device.texture(TABLE_WIDTH, rows, "RG32F", table)
 
 
-def _as_int32(seed: int) -> int:
-    """The lowest 32 bits of any integer, as the signed number of the same bits."""
-    return (seed & 0xFFFFFFFF) - ((seed & 0x80000000) << 1)
-
-
-def _stopwatch(timings: dict[str, float] | None):
+def stopwatch(timings: dict[str, float] | None):
     """A function lap(stage, texture) that adds the time since the last lap once `texture` is there; free if unused."""
     if timings is None:
         return lambda stage, target=None: None

@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, passes, relight, status, turns, wiring
+from . import checks, passes, relight, status, turns, views, wiring
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -35,6 +35,7 @@ class Shot:
     again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
     camera: light.Camera = None
     settings: light.Settings = None
+    views: list = field(default_factory=list)  # [views.Saved]
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
@@ -51,6 +52,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
 
     idle = False  # render nothing: handlers.py has a use for an empty render
     shot = None
+    views = ()  # what views.save() gave for the frame
     told = "", 0.0  # stage that Blender shows, and since when
     file = ""  # the saved passes of the frame, between its first view layer and its last
 
@@ -91,7 +93,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
         try:
             if shot.problem:
                 raise Problem("{}", shot.problem)
-            picture = self._gather(shot)
+            picture = self._gather(shot, depsgraph)
         except light.Cancelled:
             pass
         except (Problem, light.GpuUnavailable) as problem:
@@ -110,13 +112,18 @@ class AfterlightEngine(bpy.types.RenderEngine):
         if status.fail(scene, text):
             self.report({"ERROR"}, f"Afterlight: {text}")
 
+    def _warn(self, scene, text):
+        if status.warn(scene, text):
+            self.report({"WARNING"}, f"Afterlight: {text}")
+
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
-            relight.keep(self.shot.scene, self.file, self.shot.camera)
+            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views)
         elif self.file:
-            passes.discard(self.file)
-        self.file = ""
+            for path in (self.file, *(view.path for view in self.views)):
+                passes.discard(path)
+        self.file, self.views = "", ()
 
     def _look(self, depsgraph, source):
         """light.Camera of the frame. `source`'s camera is evaluated through our own depsgraph, with nothing else of
@@ -135,23 +142,30 @@ class AfterlightEngine(bpy.types.RenderEngine):
         finally:
             helper.camera = own
 
-    def _gather(self, shot):
+    def _gather(self, shot, depsgraph):
         start = time.perf_counter()
         if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
-            self._progress("Saving passes", 0.0)
+            if self._progress("Saving passes", 0.0):
+                raise light.Cancelled
             relight.forget(shot.scene.session_uid)
             self.file = passes.save(shot.scene)
+            self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file
         frame = passes.load(path, shot.layer, shot.window)
-        shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings), "passes file": os.path.getsize(path)}
+        further = [light.View(view.load, view.camera) for view in (shot.again.views if shot.again else self.views)]
+        shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings, len(further)),
+                       "passes file": os.path.getsize(path)}
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
+        options = {"progress": self._progress, "timings": timed, "broken": broken}
         with turns.until(self.test_break):
-            picture = light.gather_indirect(frame, shot.camera, shot.settings, progress=self._progress, timings=timed,
-                                            broken=broken)
+            if isinstance(shot.settings, light.Draws):
+                picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, **options)
+            else:
+                picture = light.gather_indirect(frame, shot.camera, shot.settings, **options)
         for name, count in broken.items():
             self.report({"WARNING"}, say(
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "

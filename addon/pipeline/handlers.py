@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, leftovers, nodes, passes, relight, status, wiring
+from . import checks, leftovers, nodes, passes, relight, status, views, wiring
 from .engine import AfterlightEngine
 
 
@@ -38,6 +38,8 @@ def before_render(scene, *_):
     if not scene.afterlight.enabled:
         return
     status.begin(scene)
+    views.reset()
+    views.begin(scene)
     if bpy.app.background and scene.library is None:
         wiring.connect(scene)
         _ensure_render_result(scene.afterlight.helper)
@@ -52,6 +54,7 @@ def before_render(scene, *_):
 @persistent
 def after_render(*_):
     """Complete or cancelled: undo _mute()."""
+    views.reset()
     while _muted:
         tree, node = _muted.pop()
         if tree in bpy.data.node_groups and node in bpy.data.node_groups[tree].nodes:

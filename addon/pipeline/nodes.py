@@ -31,7 +31,7 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "plain" (an ordinary node in a tree we made), or None for the user's own."""
+    """"add", "light", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
     return node.get(MARK)
 
 
@@ -106,6 +106,45 @@ def light_node(tree, helper, layer):
     light.label = "Afterlight: Indirect Light"
     light.scene, light.layer = helper, layer
     return light
+
+
+def view_node(tree, view):
+    """A Render Layers node for which Blender renders a view. Nothing is linked to it."""
+    node = _new(tree, "CompositorNodeRLayers", "view")
+    node.label = "Afterlight: View"
+    node.scene = view
+    node.hide = True
+    return node
+
+
+def move_behind(tree, late, early):
+    """Make Blender render the scenes of the nodes `late` after those of `early`. It goes by the order in which nodes were
+    made, so that those that are too old are made anew, with all that the user has done to them."""
+    order = {node: index for index, node in enumerate(tree.nodes)}
+    if not late or not early or min(map(order.get, late)) > max(map(order.get, early)):
+        return
+    for old in late:
+        _remake(tree, old)
+
+
+def _remake(tree, old):
+    new = _new(tree, old.bl_idname, role(old) or "")
+    if role(old) is None:
+        del new[MARK]
+    new.scene, new.layer = old.scene, old.layer
+    for name in ("parent", "location", "width", "label", "hide", "mute", "use_custom_color", "color", "select"):
+        setattr(new, name, getattr(old, name))
+    for output in old.outputs:
+        for link in output.links:
+            target = new.outputs.get(output.name)
+            if target is not None:
+                is_muted = link.is_muted
+                tree.links.new(target, link.to_socket).is_muted = is_muted
+    name, was_active = old.name, tree.nodes.active == old
+    tree.nodes.remove(old)
+    new.name = name
+    if was_active:
+        tree.nodes.active = new
 
 
 def picture_node(tree, scene):

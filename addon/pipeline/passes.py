@@ -148,19 +148,52 @@ def camera(evaluated, depsgraph, scene):
 
     From Blender's own projection matrix, so that lens, sensor fit, shift and pixel aspect are all in it.
     """
-    (x, y, _, _), (width, height) = window(scene)
-    projection = np.array(evaluated.calc_matrix_camera(
-        depsgraph, x=width, y=height, scale_x=scene.render.pixel_aspect_x, scale_y=scene.render.pixel_aspect_y))
-    orthographic = evaluated.data.type == "ORTHO"
+    (x, y, _, _), full = window(scene)
+    aspect = scene.render.pixel_aspect_x, scene.render.pixel_aspect_y
+    return camera_at(evaluated.matrix_world, evaluated, depsgraph, (x, y), full, aspect)
+
+
+def camera_at(matrix, lens, depsgraph, corner, full, aspect):
+    """light.Camera at `matrix` with the lens of the camera object `lens`, for the part of a frame of `full` pixels (width,
+    height) that begins at `corner`."""
+    (x, y), (width, height) = corner, full
+    projection = np.array(lens.calc_matrix_camera(
+        depsgraph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1]))
+    orthographic = lens.data.type == "ORTHO"
     # ndc = (P00 q + P02 * -1) / 1 in perspective, P00 q + P03 in orthographic; ndc = 2 pixel / size - 1.
     shift = -projection[:2, 3] if orthographic else projection[:2, 2]
     focus = projection[(0, 1), (0, 1)]
     size = np.array([width, height], float)
-    axes = np.array(evaluated.matrix_world.to_3x3())
+    axes = np.array(matrix.to_3x3())
     to_world = axes / np.linalg.norm(axes, axis=0)  # Blender renders as if a scaled camera were not
     return light.Camera(
         rotation=np.linalg.inv(to_world), scale=2 / size / focus,
-        offset=(2 * np.array([x, y]) / size - 1 + shift) / focus, orthographic=orthographic)
+        offset=(2 * np.array([x, y]) / size - 1 + shift) / focus, orthographic=orthographic,
+        position=np.array(matrix.translation, float))
+
+
+def positions(frame, seen, flat):
+    """(N, 3) float64, in the world: where the pixels of light.Passes with these flat indices lie, through light.Camera."""
+    width, height = frame.size
+    row, column = np.divmod(flat, width)
+    ray = seen.offset + seen.scale * np.stack([column + 0.5, height - row - 0.5], axis=-1)
+    depth = frame.depth[row, column].astype(float)[:, None]
+    local = np.concatenate([ray * (1 if seen.orthographic else depth), -depth], axis=1)
+    return local @ seen.rotation + seen.position  # the inverse of the rotation is its transpose
+
+
+def project(places, size, seen):
+    """(rows, columns, depths) of world positions (N, 3) in a frame of `size` (width, height) seen through light.Camera; rows and
+    columns are -1 where a position is not in the frame."""
+    width, height = size
+    local = (places - seen.position) @ seen.rotation.T
+    depth = -local[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ray = local[:, :2] if seen.orthographic else local[:, :2] / depth[:, None]
+    column, up = np.nan_to_num((ray - seen.offset) / seen.scale, nan=-1.0, posinf=-1.0, neginf=-1.0).T
+    inside = (depth > 0) & (column >= 0) & (column < width) & (up >= 0) & (up < height)
+    row = np.where(inside, height - 1 - np.floor(up).clip(0, height - 1), -1).astype(int)
+    return row, np.where(inside, np.floor(column), -1).astype(int), depth
 
 
 def _mapped(path, header):

@@ -33,22 +33,23 @@ class Kept:
     frame: int
     camera: light.Camera
     layers: dict
+    views: tuple = ()        # of views.Saved
 
 
 _kept = {}        # by the scene's session_uid
 _exchanged = {}   # session_uids of scenes that have our engine for a moment: whether it has been called by now
 
 
-def keep(scene, path, camera):
+def keep(scene, path, camera, views=()):
     """Keep the file of a frame that is done; one that was kept before goes, and so does a file that can't be read."""
-    forget(scene.session_uid, but=path)
+    forget(scene.session_uid, but=(path, *(view.path for view in views)))
     try:
         layers = passes.contents(path, [layer.name for layer in scene.view_layers])
     except Problem:  # the gather has said so
         passes.discard(path)
         return
     window, full = passes.window(scene)
-    _kept[scene.session_uid] = Kept(path, os.path.getsize(path), window, full, scene.frame_current, camera, layers)
+    _kept[scene.session_uid] = Kept(path, os.path.getsize(path), window, full, scene.frame_current, camera, layers, tuple(views))
 
 
 def kept(scene):
@@ -56,11 +57,12 @@ def kept(scene):
     return _kept.get(scene.session_uid)
 
 
-def forget(uid, but=""):
-    """Remove the kept file of the scene with this session_uid, unless it is `but`."""
+def forget(uid, but=()):
+    """Remove the kept file of the scene with this session_uid, and those of its views, unless they are in `but`."""
     gone = _kept.pop(uid, None)
-    if gone is not None and gone.path != but:
-        passes.discard(gone.path)
+    for path in (gone.path, *(view.path for view in gone.views)) if gone else ():
+        if path not in but:
+            passes.discard(path)
 
 
 @persistent

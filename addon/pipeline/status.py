@@ -13,6 +13,8 @@ from ..translations import say
 from . import turns
 
 _messages = {}
+_warnings = {}
+_coverage = {}
 _stages = {}
 _memory = {}
 _failed = False
@@ -31,6 +33,7 @@ class Problem(Exception):
 def begin(scene):
     """Forget what the render before had to say."""
     _messages.pop(scene.session_uid, None)
+    _warnings.pop(scene.session_uid, None)
 
 
 def fail(scene, text):
@@ -43,6 +46,30 @@ def fail(scene, text):
     if not bpy.app.background:
         turns.later(lambda: bpy.app.timers.register(lambda: _pop_up(text)))
     return True
+
+
+def warn(scene, text):
+    """Remember what the last render of `scene` had to do without, though it was lit. Returns whether that is news."""
+    known = _warnings.setdefault(scene.session_uid, [])
+    if text in known:
+        return False
+    known.append(text)
+    return True
+
+
+def warnings(scene):
+    """What warn() has been told since the last render began."""
+    return _warnings.get(scene.session_uid, [])
+
+
+def covered(scene, shares, seconds):
+    """Keep what the last placement of views gave: the share of the light that the main view sees, and with each view."""
+    _coverage[scene.session_uid] = shares, seconds
+
+
+def coverage(scene):
+    """(shares, seconds) as covered() was told, or None."""
+    return _coverage.get(scene.session_uid)
 
 
 def message(scene):
@@ -112,5 +139,7 @@ def unregister():
     if not _failed:
         atexit.unregister(_exit_code)
     _messages.clear()
+    _warnings.clear()
+    _coverage.clear()
     _stages.clear()
     _memory.clear()

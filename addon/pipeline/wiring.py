@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import nodes
+from . import nodes, views
 from .nodes import MARK
 from .passes import PASSES
 
@@ -19,6 +19,7 @@ def connect(scene):
     old, helper = settings.helper, _own_helper(scene)
     _mirror_layers(scene, helper)
     tree = _tree_in_use(scene)
+    views.connect(scene, tree, helper)
     for group in nodes.trees(tree):
         if _is_unshared(group, scene):
             nodes.retarget(group, scene, old, helper)
@@ -32,6 +33,12 @@ def connect(scene):
     helper.view_layers[0].update()
 
 
+def connect_if_enabled(scene):
+    """For settings that decide what connect() makes."""
+    if scene.afterlight.enabled and scene.library is None:
+        connect(scene)
+
+
 def follow(scene):
     """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
     the scene renamed or copied. Puts no node where the user may have taken one away."""
@@ -42,6 +49,7 @@ def follow(scene):
     if helper is None:
         return  # deleted by hand: checks.py says so, with a button
     _mirror_layers(scene, helper)
+    views.follow(scene)
     for group in nodes.trees(scene.compositing_node_group):
         nodes.retarget(group, scene, helper, helper)
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
@@ -56,6 +64,7 @@ def follow(scene):
 def disconnect(scene):
     """Take out all that connect() put in and restore what was there; keep what the user has built on it."""
     settings, helper = scene.afterlight, scene.afterlight.helper
+    views.disconnect(scene)
     is_ours = helper is not None and source(helper) == scene
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for group in nodes.trees(tree):
@@ -70,13 +79,14 @@ def disconnect(scene):
 
 def is_helper(scene):
     """Whether the scene is one that connect() made."""
-    return scene.get(MARK) == "helper"
+    return scene.get(MARK) in {"helper", "scout", "view"}
 
 
 def source(helper):
     """The scene whose light `helper` gathers, or None. A copied scene names the helper of its original until follow()
     has seen it; the original is older."""
-    return min((scene for scene in bpy.data.scenes if scene.afterlight.helper == helper),
+    return min((scene for scene in bpy.data.scenes if scene.afterlight.helper == helper
+                or any(view.scene == helper for view in scene.afterlight.view_scenes)),
                key=lambda scene: scene.session_uid, default=None)
 
 
@@ -118,6 +128,8 @@ def faults(scene):
         found[say("Afterlight's Render Layers node was deleted from the compositor")] = "REPAIR"
     elif any(nodes.role(node) == "add" and not nodes.source(node, nodes.B) for node in nodes.all_nodes(tree)):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
+    if views.faults(scene):
+        found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
     if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in PASSES)
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"

@@ -268,4 +268,92 @@ TEXTS = {
     "the preferences":
         "Der Grafiktreiber kann den Shader '{}' nicht übersetzen. Den Treiber aktualisieren oder in den "
         "Benutzereinstellungen Blenders anderes GPU-Backend versuchen",
+
+    # Radiosity and its views
+    "Method": "Verfahren",
+    "How the light is gathered: how close it comes to Cycles, and what it costs":
+        "Wie das Licht gesammelt wird: wie nah es Cycles kommt und was es kostet",
+    "Paper": "Paper",
+    "One bounce between the surfaces that the camera sees, through whatever stands between them: the fastest":
+        "Eine Reflexion zwischen den Flächen, die die Kamera sieht, durch alles hindurch, was zwischen ihnen steht: "
+        "am schnellsten",
+    "Radiosity": "Radiosity",
+    "Several bounces between the surfaces that all views see, which hide one another: the closest to Cycles":
+        "Mehrere Reflexionen zwischen den Flächen, die alle Ansichten sehen und die einander verdecken: am nächsten "
+        "an Cycles",
+    "Draws": "Ziehungen",
+    "Emitters that a texel looks at, each chosen among sixteen. Time grows in proportion, noise falls with the "
+    "square root":
+        "Strahler, zu denen ein Texel blickt, jeder aus sechzehn gewählt. Die Zeit wächst im gleichen Verhältnis, "
+        "das Rauschen sinkt mit der Wurzel",
+    "Bounces": "Reflexionen",
+    "How often light is passed on from surface to surface. Rooms with bright walls want more. Each adds a little "
+    "time, the same for pictures of any size":
+        "Wie oft das Licht von Fläche zu Fläche weitergeht. Räume mit hellen Wänden brauchen mehr. Jede kostet ein "
+        "wenig Zeit, für Bilder jeder Größe gleich viel",
+    "Visibility": "Verdeckung",
+    "Let surfaces hide what lies behind them. Without, light passes through everything, rooms with furniture get too "
+    "bright, and the gather takes about half the time":
+        "Flächen verdecken lassen, was hinter ihnen liegt. Ohne dies geht Licht durch alles hindurch, Räume mit "
+        "Möbeln werden zu hell, und das Sammeln braucht etwa die halbe Zeit",
+
+    # Views
+    "Views": "Ansichten",
+    "View": "Ansicht",
+    "Camera": "Kamera",
+    "Cameras": "Kameras",
+    "The views, where they are manual": "Die Ansichten, wo sie von Hand gewählt sind",
+    "A camera that sees surfaces which light the picture. The place of a lamp is a good one":
+        "Eine Kamera, die Flächen sieht, welche das Bild beleuchten. Der Ort einer Lampe eignet sich gut",
+    "Which cameras see the surfaces that send light: what none of them sees sends none. Each further view costs the time "
+    "of one sample of EEVEE":
+        "Welche Kameras die Flächen sehen, die Licht senden: was keine sieht, sendet keines. Jede weitere Ansicht kostet die "
+        "Zeit eines Samples von EEVEE",
+    "Camera Only": "Nur Kamera",
+    "Only the picture itself: the fastest, without light from outside it":
+        "Nur das Bild selbst: am schnellsten, ohne Licht von außerhalb",
+    "Automatic": "Automatisch",
+    "Views are placed in every shot where they see most of what is missing":
+        "In jeder Einstellung werden Ansichten dort aufgestellt, wo sie am meisten von dem sehen, was fehlt",
+    "Manual": "Von Hand",
+    "The cameras that you list": "Die Kameras der Liste",
+    "Views at Most": "Höchstzahl der Ansichten",
+    "How many views are placed at most. Fewer are placed, at less cost, where a further one would see little that is new":
+        "Wie viele Ansichten höchstens aufgestellt werden. Wo eine weitere kaum Neues sähe, sind es weniger, und es kostet "
+        "weniger",
+    "Keep Views as Cameras": "Ansichten als Kameras behalten",
+    "Make a camera for each view of the last render and list them, to see, adjust and keep them: they are the same in "
+    "every frame and on every computer of a farm from then on":
+        "Für jede Ansicht des letzten Renderns eine Kamera anlegen und in die Liste setzen, um sie zu sehen, zu ändern und "
+        "zu behalten: von da an sind sie in jedem Frame und auf jedem Rechner einer Renderfarm dieselben",
+    "Add View": "Ansicht hinzufügen",
+    "Add the selected cameras to the list of views, or an empty line where none is selected":
+        "Die ausgewählten Kameras in die Liste der Ansichten setzen, oder eine leere Zeile, wo keine ausgewählt ist",
+    "Remove View": "Ansicht entfernen",
+    "Take the active line out of the list of views. The camera stays in the scene":
+        "Die aktive Zeile aus der Liste der Ansichten nehmen. Die Kamera bleibt in der Szene",
+    "Seen by the Camera": "Von der Kamera gesehen",
+    "Seen with {} Views": "Mit {} Ansichten gesehen",
+    "Placing": "Aufstellen",
+    "There can be {} views at most": "Es kann höchstens {} Ansichten geben",
+    "No views have been placed in this scene. Set Views to Automatic and render":
+        "In dieser Szene wurden noch keine Ansichten aufgestellt. Ansichten auf Automatisch stellen und rendern",
+    "Afterlight's views (used by its helper scenes)": "Ansichten von Afterlight (für dessen Hilfsszenen)",
+    "No views were placed: no surface lights what the camera sees":
+        "Es wurden keine Ansichten aufgestellt: keine Fläche beleuchtet, was die Kamera sieht",
+    "No views were placed: there is no free place that shows more than the camera does":
+        "Es wurden keine Ansichten aufgestellt: kein freier Ort zeigt mehr als die Kamera",
+    'The view "{}" sees no surface that lights the picture, and is left out. It may be inside a wall, or look away. Move '
+    "it, or remove it from the list":
+        "Die Ansicht „{}“ sieht keine Fläche, die das Bild beleuchtet, und bleibt weg. Vielleicht steckt sie in einer Wand "
+        "oder blickt in eine andere Richtung. Sie versetzen oder aus der Liste nehmen",
+    "A view in the list has no camera. Choose one, or remove the line":
+        "Eine Ansicht in der Liste hat keine Kamera. Eine wählen oder die Zeile entfernen",
+    'The view "{}" is no camera, and is left out. Choose a camera in its place':
+        "Die Ansicht „{}“ ist keine Kamera und bleibt weg. An ihrer Stelle eine Kamera wählen",
+    'The view "{}" is panoramic, and is left out. Set its Lens Type to Perspective or Orthographic':
+        "Die Ansicht „{}“ ist ein Panorama und bleibt weg. Ihren Linsentyp auf Perspektivisch oder Orthografisch stellen",
+    "A view could not be used: {}": "Eine Ansicht konnte nicht verwendet werden: {}",
+    "A scene through which Afterlight renders its views, or its node in the compositor, was deleted":
+        "Eine Szene, durch die Afterlight seine Ansichten rendert, oder ihr Node im Compositor wurde gelöscht",
 }

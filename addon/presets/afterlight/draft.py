@@ -2,6 +2,10 @@
 import bpy
 settings = bpy.context.scene.afterlight
 
+settings.method = "RADIOSITY"
 settings.start = "QUARTER"
-settings.samples = 64
-settings.radius = 8
+settings.draws = 8
+settings.bounces = 3
+settings.use_visibility = True
+settings.views = "AUTOMATIC"
+settings.view_count = 4

@@ -2,6 +2,10 @@
 import bpy
 settings = bpy.context.scene.afterlight
 
-settings.start = "FULL"
-settings.samples = 256
-settings.radius = 24
+settings.method = "RADIOSITY"
+settings.start = "HALF"
+settings.draws = 16
+settings.bounces = 4
+settings.use_visibility = True
+settings.views = "AUTOMATIC"
+settings.view_count = 7

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The light between the surfaces of several views, in as many bounces as are asked for, from top to bottom.
+
+    depth maps of all views                  what each camera sees of any place
+    emitters, receivers                      blocks of every view's pixels, in world space
+    for each bounce but the last:            every view's receivers gather, and its emitters pass it on
+    the last one:                            the main view's base gathers; smooth, composite, read back
+
+A surface that several views show counts once, and what stands between two surfaces hides them from each other. The
+sizes below are for frames of any resolution: the cost of views and bounces is the same for all. docs/views.md has what
+decided them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from . import device
+from .inputs import Camera, Draws, View
+from .pipeline import Cancelled, composite, pack, stopwatch, upload
+
+DEPTHS_ACROSS = 320        # least texels along a depth map's longer side, and emitters along the main view's
+EMITTER, RECEIVER = 2, 8   # texels of the depth map along the side of another view's emitters, of any view's receivers
+STEPS = 24                 # of the way to an emitter at which it is asked whether something stands there
+ENTRIES = 1 << 18          # of the table that emitters are drawn from
+BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
+BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
+KINDS = "emitters", "receivers"
+
+
+def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, fraction: False,
+                 timings: dict[str, float] | None = None, broken: dict[str, int] | None = None) -> np.ndarray:
+    """The indirect light of the first view from the surfaces of all, after settings.bounces.
+
+    views: at most device.MOST_VIEWS, all of one resolution. Returns (H, W, 3) float32, bottom row first: the indirect
+    radiance to add to the picture, W sr^-1 m^-2; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as
+    gather_indirect() has them; broken speaks of the first view.
+    """
+    lap = stopwatch(timings)
+
+    def report(stage, fraction):
+        if progress(stage, fraction):
+            raise Cancelled
+
+    passes = views[0].passes
+    width, height = passes.size
+    table = view_table(views, passes.size, settings)
+    settings = replace(settings, start=start_of(settings, passes.size))
+    depths, emitters, receivers, channels = look(views, passes, table, report, broken)
+    lap("views", receivers)
+    base = pack(channels, passes, views[0].camera, settings)
+    for name in device.LIGHT_CHANNELS:
+        del channels[name]
+
+    irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
+    irradiance.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
+    sent = radiate(emitters, irradiance, table)
+    for bounce in range(1, settings.bounces):
+        report("bounces", (bounce - 1) / settings.bounces)
+        draws = draw_table(sent, table, settings.seed + bounce)
+        table["draws"][:2] = BOUNCE_GROUPS, BOUNCE_CANDIDATES
+        draw("draw_blocks", settings.seed + bounce, table, irradiance, {
+            "receivers": receivers, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths})
+        sent = radiate(emitters, irradiance, table)
+    lap("bounces", sent)
+
+    draws = draw_table(sent, table, settings.seed)
+    table["draws"][:2] = settings.groups, settings.candidates
+    *_, across, up = base.boxes[0]
+    gathered = device.texture(across, up)
+    draw("draw_base", settings.seed, table, gathered, {
+        "surfels": base.surfels, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
+        base.parameters, lambda done: report("gather", done))
+    lap("gather", gathered)
+
+    report("upsample", 1.0)
+    total = device.texture(across, up)
+    device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": gathered, "total_out": total},
+                    device.groups(across, up))
+    indirect = composite(channels, base, total)
+    lap("upsample", indirect)
+    picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
+    lap("read_back")
+    return picture
+
+
+def look(views, passes, table, report=lambda stage, fraction: None, broken=None):
+    """(depth maps, emitters, receivers, channels of the main view) of all views; passes: the main one's."""
+    size = passes.size
+    depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
+    for index, view in enumerate(views):
+        report("views", index / len(views) / 2)
+        channels = upload(view.passes if index else passes, light=False)
+        device.dispatch("depths", camera_block(view, index, size), channels | {"depths_out": depths},
+                        device.groups(*table["depths"][:2]), table)
+    targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
+    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
+        report("views", 1 - (index + 1) / len(views) / 2)
+        shown = views[index].passes if index else passes
+        channels = upload(shown, None if index else broken)
+        name = "emit_with_normals" if shown.lacks_normals() else "emit"
+        for kind, target in targets.items():
+            block = camera_block(views[index], index, size)
+            block["span"][1] = kind == "receivers"
+            device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
+                            device.groups(*table[kind][index][1:3]), table)
+    return depths, *targets.values(), channels
+
+
+def start_of(settings, size):
+    """Pixels along a base texel: those asked for, but no coarser than the depth maps. Small pictures cost little enough."""
+    return max(start for start in (1, 2, 4) if start <= min(settings.start, step_of(size)))
+
+
+def step_of(size):
+    """Pixels along a texel of a depth map."""
+    return max(1, max(size) // DEPTHS_ACROSS)
+
+
+def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
+    """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
+    width, height = size
+    step = step_of(size)
+    table, origin = np.zeros((), device.VIEWS), np.asarray(views[0].camera.position, float)
+    table["depths"] = -(-width // step), -(-height // step), step, len(views)
+    table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
+    first = dict.fromkeys(KINDS, 0)
+    for index, view in enumerate(views):
+        camera = view.camera
+        eye = np.asarray(camera.position, float) - origin
+        table["rotation"][index] = np.concatenate([camera.rotation, -(camera.rotation @ eye)[:, None]], axis=1)
+        table["projection"][index] = *(np.asarray(camera.scale) * step), *camera.offset
+        table["eye"][index] = *eye, camera.orthographic
+        for name, side in zip(KINDS, (step * (EMITTER if index else 1), step * RECEIVER)):
+            across, up = -(-width // side), -(-height // side)
+            table[name][index] = first[name], across, up, side
+            first[name] += across * up
+    return table
+
+
+def camera_block(view: View, index: int, size: tuple[int, int]) -> np.ndarray:
+    """A Parameters block with the camera of one view, for passes that read its channels."""
+    camera = view.camera
+    return device.parameters(rotation=camera.rotation, projection=(*camera.scale, *camera.offset), span=(index,),
+                             frame=(*size, 1, int(camera.orthographic)))
+
+
+def radiate(emitters, irradiance, table):
+    """(rows, RECORDS_WIDTH) texture: radiance and area of every emitter, given what the receivers have gathered."""
+    sent = device.texture(device.RECORDS_WIDTH, rows_of(table["emitters"]))
+    device.dispatch("radiate", device.parameters(), {
+        "emitters": emitters, "irradiance": irradiance, "radiance_out": sent}, device.groups(sent.width, sent.height), table)
+    return sent
+
+
+def draw_table(sent, table, seed):
+    """The table that emitters are drawn from, each as often as its share of all power and of all area; table["odds"] gets
+    the factors that give those shares."""
+    light = device.read(sent).reshape(-1, 4)[:count_of(table["emitters"])].astype(np.float64)
+    area = light[:, 3]
+    power = np.abs(light[:, :3]).sum(-1)
+    whole, bright = area.sum(), (power * area).sum()
+    by_area = BY_AREA if bright > 0 else 1.0
+    table["odds"][:2] = (1 - by_area) / bright if bright > 0 else 0.0, by_area / whole if whole > 0 else 0.0
+    chances = np.cumsum((table["odds"][0] * power + table["odds"][1]) * area)
+    at = (np.arange(ENTRIES) + np.random.default_rng(seed & 0xFFFFFFFF).random(ENTRIES)) / ENTRIES * chances[-1]
+    numbers = np.minimum(np.searchsorted(chances, at), len(chances) - 1).astype(np.float32)
+    return device.texture(device.DRAWS_WIDTH, ENTRIES // device.DRAWS_WIDTH, "R32F", numbers)
+
+
+def draw(name, seed, table, target, textures, block=None, after_rows=lambda done: None):
+    """Gather into `target` by one of the passes "draw_...", some rows at a time."""
+    block = device.parameters() if block is None else block.copy()
+    block["band"][1] = device.as_int32(seed)
+    each = int(target.width * table["draws"][0] * table["draws"][1])  # candidates of a row
+    first = 0
+    while first < target.height:
+        rows = min(max(1, int(device.band(name)) // each // 8) * 8, target.height - first)
+        block["band"][0] = first
+        device.run_band(name, rows * each, block, textures | {"irradiance_out": target},
+                        device.groups(target.width, rows), table)
+        first += rows
+        after_rows(first / target.height)
+
+
+def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
+    """As memory.gpu_bytes()."""
+    cameras = [View(None, Camera(np.eye(3), np.ones(2), np.zeros(2)))] * (1 + further)
+    table = view_table(cameras, (width, height), settings)
+    depths = 8 * int(table["depths"][0] * table["depths"][1]) * len(cameras)
+    emitters, receivers = (device.RECORDS_WIDTH * rows_of(table[kind]) for kind in KINDS)
+    start = start_of(settings, (width, height))
+    base = -(-width // start) * -(-height // start)
+    kept = depths + 64 * (emitters + receivers)
+    channel = -(-width // 4) * height * 16
+    bouncing = 16 * (base + receivers + 2 * emitters) + 4 * ENTRIES + 7 * channel
+    finishing = 16 * (3 * base + receivers + emitters) + 4 * ENTRIES + 10 * channel
+    return kept + max(13 * channel + 16 * base, bouncing, finishing)
+
+
+def count_of(grids):
+    """Records of all views."""
+    first, across, up, _ = grids[np.argmax(grids[:, 0])]
+    return int(first + across * up)
+
+
+def rows_of(grids):
+    """Rows of RECORDS_WIDTH that they fill."""
+    return -(-count_of(grids) // device.RECORDS_WIDTH)

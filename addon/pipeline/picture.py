@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The main view as EEVEE has just finished it: which of its points get light, and what it knows of the surfaces that
+send some."""
+
+import numpy as np
+
+from .. import light
+from . import materials, passes, placement, rays, relight
+
+
+class Picture:
+    """The main view as EEVEE has just finished it, by the first view layer that is rendered."""
+
+    def __init__(self, scene, camera):
+        layer = next(layer for layer in scene.view_layers if layer.use)
+        path = passes.file_path(scene)
+        relight.forget(scene.session_uid)  # its file is written again
+        self._frame = passes.load(passes.save(scene), layer.name, passes.window(scene)[0])
+        passes.discard(path)
+        self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
+
+    def receivers(self, rng):
+        """(places, normals, albedo) of pixels spread over the picture."""
+        frame = self._frame
+        flat = placement.pixels((frame.depth > 0) & (frame.depth < light.FARTHEST), rng)
+        row, column = np.divmod(flat, frame.size[0])
+        places = passes.positions(frame, self._camera, flat)
+        normals = np.stack([axis[row, column] for axis in frame.normal], -1).astype(float)
+        albedo = np.mean([axis[row, column] for axis in frame.diffuse_color], 0)
+        # Off the surface by more than the depth's own precision.
+        off = 1e-3 * np.abs(frame.depth[row, column])[:, None]
+        return np.nan_to_num(places + off * normals), np.nan_to_num(normals), np.nan_to_num(albedo)
+
+    def sees(self, places, normals):
+        """(bool (N,), rows, columns): which of these points of surfaces the picture shows, and where."""
+        row, column, depth = passes.project(places, self._frame.size, self._camera)
+        shown = self._frame.depth[row, column]
+        toward = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - places
+        return (row >= 0) & (depth < 1.01 * shown) & (np.sum(toward * normals, -1) > 0), row, column
+
+    def radiance_by(self, geometry, rng):
+        """What placement.bounces() asks: from the picture where it shows the point, else by the lamps and materials."""
+        def radiance(places, normals, things):
+            albedo, emission = geometry.look(things)
+            direct = rays.direct_light(geometry, places, normals, rng) + self._sky
+            seen, row, column = self.sees(places, normals)
+            for guess, known in ((direct, self._frame.diffuse_direct), (albedo, self._frame.diffuse_color),
+                                 (emission, self._frame.emission)):
+                shown = np.nan_to_num(np.mean([axis[row, column] for axis in known], 0), posinf=0.0)
+                guess[seen] = np.clip(shown[seen], 0, None)
+            return direct, albedo, emission
+        return radiance

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where views must stand to see the surfaces that light the picture. Arrays and a function that casts rays; no Blender.
+
+Rays leave points of the picture as light bounces off them backwards; what they hit is what should be seen, weighed by
+the light it sends to the picture. Places on those rays are free and connected by construction. Of all such places and
+26 directions the one that newly sees most is taken, until nothing much is new.
+
+`cast(origins, directions, limits, nearest=True)` stands for the scene: arrays of (N, 3), (N, 3) and (N,), directions of length 1, to
+(distance, normal, thing): (N,), infinite where nothing lies within the limit; (N, 3), either side; (N,) int. Without
+`nearest` any hit within the limit will do, and only whether there is one matters.
+"""
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+RAYS = 1000                # that look for what lights the picture
+PLACES = 60                # on them, that a view may have
+LEAST_GAIN = 0.01          # of all weight, that a further view must newly see
+CLEARANCE = 0.01           # of the scene's size, between a view and any surface
+DIM = 0.1                  # of the mean light, that surfaces in the dark count for: they send the second bounce
+FALL = 0.03                # of all weight: views that see less than when they were placed, by more than that, move
+
+DIRECTIONS = np.array([each for each in product((-1, 0, 1), repeat=3) if any(each)], float)
+DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Bounces:
+    """What lights the picture. starts, places, normals: (N, 3), where the rays left the picture and what they hit. weights: (N,),
+    their sum is 1. size: of the scene as far as they reach, metres."""
+
+    starts: np.ndarray
+    places: np.ndarray
+    normals: np.ndarray
+    weights: np.ndarray
+    size: float
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """poses: 4 x 4 matrices, view to world. coverage: the share of weight that the main view sees, and after each pose.
+    clearance: from each pose to the next surface, at least, metres."""
+
+    poses: list
+    coverage: list
+    clearance: float
+
+
+def pixels(is_surface, rng):
+    """Indices of RAYS pixels, spread evenly over those that show a surface; of all pixels, flat."""
+    found = np.flatnonzero(is_surface)
+    if not len(found):
+        return found
+    return found[np.minimum(((np.arange(RAYS) + rng.random(RAYS)) / RAYS * len(found)).astype(int), len(found) - 1)]
+
+
+def bounces(places, normals, albedo, cast, radiance, rng):
+    """Bounces of a picture, or None where its light comes from nothing. places, normals: (N, 3), of pixels(). albedo: (N,).
+
+    radiance(places, normals, things): (direct light on a white surface, albedo, emission) of what is hit, (N,) each."""
+    length = np.linalg.norm(normals, axis=1)
+    usable = length > 0.5  # materials of pure emission have no normal
+    starts, albedo = places[usable], albedo[usable]
+    directions = _cosine(normals[usable] / length[usable, None], rng)
+    distance, normal, thing = cast(starts, directions, np.full(len(starts), np.inf))
+    hit = np.isfinite(distance)
+    if not hit.any():
+        return None
+    starts, directions, albedo = starts[hit], directions[hit], albedo[hit]
+    found = starts + directions * distance[hit, None]
+    facing = np.where(np.sum(normal[hit] * directions, 1)[:, None] > 0, -normal[hit], normal[hit])
+    direct, reflects, emission = radiance(found, facing, thing[hit])
+    weights = albedo * (reflects * (direct + DIM * direct.mean()) + emission)
+    if not weights.sum() > 0:  # nothing is lit, or its light is not known
+        weights = np.ones(len(found))
+    low, high = np.percentile(found, (5, 95), axis=0)
+    return Bounces(starts, found, facing, weights / weights.sum(), float(max(np.linalg.norm(high - low), 1e-6)))
+
+
+def place(light, seen, cast, half, most, rng, kept=()):
+    """Placement of at most `most` views. seen: (N,) bool, what the main view sees of `light`. half: tangents of half the
+    views' fields. kept: poses that stay before others are chosen where they see as much."""
+    share = light.weights
+    options = [(pose, sees(pose, half, light, visible(pose[:3, 3], light, cast))) for pose in kept]
+    first_new = len(options)
+    for position in _free_places(light, cast, rng):
+        reached = visible(position, light, cast)
+        for axes in DIRECTIONS:
+            pose = looking(position, axes)
+            options.append((pose, sees(pose, half, light, reached)))
+    favour = np.where(np.arange(len(options)) < first_new, 1.1, 1.0)
+    poses, coverage = [], [float(share @ seen)]
+    table = np.array([saw for _, saw in options]).reshape(len(options), len(share))
+    while len(poses) < most and len(options):
+        gain = (table & ~seen) @ share
+        best = int(np.argmax(gain * favour))
+        if gain[best] < LEAST_GAIN:
+            break
+        poses.append(options[best][0])
+        seen = seen | table[best]
+        coverage.append(float(share @ seen))
+    return Placement(poses, coverage, CLEARANCE * light.size)
+
+
+def covered(light, seen, cast, half, poses):
+    """The share of weight that the main view and those at `poses` see together."""
+    for pose in poses:
+        seen = seen | sees(pose, half, light, visible(pose[:3, 3], light, cast))
+    return float(light.weights @ seen)
+
+
+def looking(position, direction):
+    """The pose at `position` that looks along `direction`, upright."""
+    back = -direction / np.linalg.norm(direction)
+    up = np.array([0.0, 1, 0]) if abs(back[2]) > 0.999 else np.array([0.0, 0, 1])
+    right = np.cross(up, back)
+    right /= np.linalg.norm(right)
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = right, np.cross(back, right), back, position
+    return pose
+
+
+def visible(position, light, cast):
+    """(N,) bool: what can be seen from a place, in any direction. position: (3,), or (N, 3), one for each."""
+    to = light.places - position
+    far = np.linalg.norm(to, axis=1)
+    far = np.where(far > 0, far, 1.0)
+    found = (np.sum(to * light.normals, 1) < 0) & (far > 1e-4 * light.size)
+    to, limit = to[found] / far[found, None], far[found] * (1 - 3e-3) - 1e-4 * light.size
+    distance, _, _ = cast(np.broadcast_to(position, light.places.shape)[found], to, limit, nearest=False)
+    found[found] = ~np.isfinite(distance)
+    return found
+
+
+def sees(pose, half, light, reached):
+    """(N,) bool: what of `reached` lies in the frame."""
+    local = (light.places - pose[:3, 3]) @ pose[:3, :3]
+    depth = -local[:, 2]
+    return reached & (depth > 0) & (np.abs(local[:, 0]) < depth * half[0]) & (np.abs(local[:, 1]) < depth * half[1])
+
+
+def _free_places(light, cast, rng):
+    chosen = rng.integers(len(light.places), size=PLACES)
+    along = rng.uniform(0.15, 0.85, PLACES)[:, None]
+    found = light.starts[chosen] * (1 - along) + light.places[chosen] * along
+    origins, directions = np.repeat(found, len(DIRECTIONS), 0), np.tile(DIRECTIONS, (len(found), 1))
+    distance, _, _ = cast(origins, directions, np.full(len(origins), CLEARANCE * light.size), nearest=False)
+    return found[~np.isfinite(distance).reshape(len(found), -1).any(1)]
+
+
+def _cosine(normals, rng):
+    """A direction about each normal, as often as light leaves a matt surface that way."""
+    radius, angle = np.sqrt(rng.random(len(normals))), 2 * np.pi * rng.random(len(normals))
+    axis = np.where(np.abs(normals[:, :1]) > 0.9, (0.0, 1, 0), (1.0, 0, 0))
+    side = np.cross(normals, axis)
+    side /= np.linalg.norm(side, axis=1)[:, None]
+    found = (side * (radius * np.cos(angle))[:, None] + np.cross(normals, side) * (radius * np.sin(angle))[:, None]
+             + normals * np.sqrt(1 - radius**2)[:, None])
+    return found / np.linalg.norm(found, axis=1)[:, None]

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine of the scene that comes before the views: Blender calls it when EEVEE has finished the lit scene, and
+what it does to the cameras of the views holds for the same frame."""
+
+import time
+import traceback
+
+import bpy
+import numpy as np
+
+from ..translations import say
+from . import checks, passes, placement, rays, relight, status, views, wiring
+from .picture import Picture
+from .status import Problem
+
+
+class AfterlightScout(bpy.types.RenderEngine):
+    bl_idname = views.SCOUT_ENGINE
+    bl_label = "Afterlight's views (used by its helper scenes)"
+    bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
+
+    def render(self, depsgraph):
+        """Pose the views, or leave them out. There is no picture."""
+        scene = wiring.source(depsgraph.scene)
+        if scene is None or not views.is_rendered(scene):
+            return
+        for view in views.scenes(scene):
+            views.drop(view)
+        if relight.is_replayed(scene):
+            return  # the views that were kept with the frame are used again
+        if any(finding.fatal for finding in checks.findings(scene)):
+            return  # the engine of the light says so
+        views.mirror(scene)
+        try:
+            self._place(scene, depsgraph)
+        except Problem as problem:
+            self._warn(scene, say(*problem.args))
+        except Exception as error:  # a bug of ours must not cost the light of the main view
+            traceback.print_exc()
+            self._warn(scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
+                                  "report them", error))
+
+    def _place(self, scene, depsgraph):
+        start = time.perf_counter()
+        camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+        by_hand = scene.afterlight.views == "MANUAL"
+        if by_hand:
+            self._pose_by_hand(scene, depsgraph)
+        geometry = rays.Geometry(depsgraph)
+        picture, rng = Picture(scene, camera), np.random.default_rng(scene.afterlight.seed)
+        found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng)
+        if found is None:
+            if not by_hand:
+                self._warn(scene, say("No views were placed: no surface lights what the camera sees"))
+            return
+        seen, _, _ = picture.sees(found.places, found.normals)
+        if by_hand:
+            shares = self._score(scene, depsgraph, found, seen, geometry.cast)
+        else:
+            shares = self._choose(scene, depsgraph, found, seen, geometry.cast, rng)
+        status.covered(scene, shares, time.perf_counter() - start)
+
+    def _pose_by_hand(self, scene, depsgraph):
+        for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
+            if problem := views.unusable(each.camera):
+                self._warn(scene, problem)
+            else:
+                evaluated = each.camera.evaluated_get(depsgraph)
+                views.pose(view, scene, evaluated.matrix_world, views.lens_of(evaluated, depsgraph, scene))
+
+    def _score(self, scene, depsgraph, found, seen, cast):
+        """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left out."""
+        shares = [float(found.weights @ seen)]
+        for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
+            if not view.view_layers[0].use:
+                continue
+            camera = views.camera(view, depsgraph, scene)
+            frame = passes.window(scene)[0][2:]
+            row, _, depth = passes.project(found.places, frame, camera)
+            eye = camera.position
+            if camera.orthographic:
+                eye = found.places + np.outer(depth, camera.rotation[2])
+            saw = placement.visible(eye, found, cast) & (row >= 0)
+            if not saw.any():
+                self._warn(scene, say('The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
+                                      "a wall, or look away. Move it, or remove it from the list", each.camera.name))
+                views.drop(view)
+                continue
+            seen = seen | saw
+            shares.append(float(found.weights @ seen))
+        return shares
+
+    def _choose(self, scene, depsgraph, found, seen, cast, rng):
+        """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
+        half, most = views.half_field(scene), scene.afterlight.view_count
+        known = views.placed(scene)
+        old = known.poses if known else []
+        if known is None or len(old) > most or (
+                placement.covered(found, seen, cast, half, old) < known.coverage[-1] - placement.FALL):
+            known = placement.place(found, seen, cast, half, most, rng, old)
+            views.keep_placed(scene, known)
+            if not known.poses and known.coverage[0] < 1 - placement.FALL:
+                self._warn(scene, say("No views were placed: there is no free place that shows more than the camera does"))
+        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * found.size)
+        lens = views.wide_lens(scene, known.clearance / 4, far)
+        for view, pose in zip(views.scenes(scene), known.poses):
+            views.pose(view, scene, pose, lens)
+        return known.coverage
+
+    def _warn(self, scene, text):
+        if status.warn(scene, text):
+            self.report({"WARNING"}, f"Afterlight: {text}")
+
+
+def register():
+    bpy.utils.register_class(AfterlightScout)
+
+
+def unregister():
+    bpy.utils.unregister_class(AfterlightScout)

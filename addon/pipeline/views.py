@@ -1,0 +1,353 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The further cameras whose pixels light the picture: a helper scene for each, and how they get into the render.
+
+    Render Layers nodes at the top level, in the order in which Blender renders their scenes:
+        scout      our engine (scout.py): it sees the finished main view, poses the views, and says which are needed
+        view 1..n  EEVEE, each through a camera of its own, with the lit scene as background set
+        light      our engine (engine.py): it gathers from all of them
+
+At rest no view layer of these scenes is rendered. The scout switches on what the frame needs, reset() switches it off
+again: a view that is not needed costs nothing, nor does any where the extension is missing.
+"""
+
+from dataclasses import dataclass
+from math import radians
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from .. import light
+from ..translations import say
+from . import nodes, passes, placement
+from .nodes import MARK
+from .status import Problem
+
+SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
+SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
+MOST = 9
+PLACED = "placed"          # custom property of the scout's scene
+FIELD = radians(100)       # of an automatic view, along the longer side of the frame
+SAMPLES = 1                # EEVEE's; the pixels are averaged down afterwards
+
+# What of the lit scene decides how its surfaces look and where they are. EEVEE's own settings are mirrored all.
+_RENDER = ("use_simplify", "simplify_subdivision_render", "simplify_child_particles_render", "simplify_volumes",
+           "use_simplify_normals", "use_high_quality_normals", "frame_map_old", "frame_map_new", "film_transparent",
+           "hair_type", "hair_subdiv", "filter_size", "use_texture_cache")
+_SCENE = ("world", "frame_subframe")
+_LAYER = ("material_override", "world_override", "use_solid", "use_sky", "use_ao", "use_strand", "use_volumes",
+          "use_grease_pencil")
+_EEVEE_OWN = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
+
+_rendered = None           # session_uid of the scene that is being rendered
+
+
+def wanted(scene):
+    """How many views `scene` may need in a frame."""
+    settings = scene.afterlight
+    if not settings.enabled or settings.views == "CAMERA" or settings.method == "PAPER":
+        return 0
+    return settings.view_count if settings.views == "AUTOMATIC" else min(len(settings.view_cameras), MOST)
+
+
+def scout(scene):
+    """The scene whose engine places the views of `scene`, or None."""
+    held = [each.scene for each in scene.afterlight.view_scenes]
+    return held[0] if held else None
+
+
+def scenes(scene):
+    """The scenes through which EEVEE renders the views of `scene`, in their order."""
+    return [each.scene for each in scene.afterlight.view_scenes][1:]
+
+
+def connect(scene, tree, helper):
+    """Make, or take away, what the views of `scene` need: their scenes, and their nodes in the compositor `tree`, before
+    those of `helper`. Changes nothing that is in place already."""
+    strangers = _ensure_scenes(scene)
+    mirror(scene)
+    ours = [each.scene for each in scene.afterlight.view_scenes]
+    for node in [node for node in tree.nodes if nodes.role(node) == "view"]:
+        if node.scene is None or node.scene in strangers:
+            tree.nodes.remove(node)
+    _ensure_nodes(tree, ours)
+    if ours:
+        nodes.move_behind(tree, [node for node in tree.nodes if nodes.shows(node, helper)],
+                          [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours])
+
+
+def disconnect(scene):
+    """Take out all that connect() put in."""
+    settings = scene.afterlight
+    ours = _own(scene)
+    for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
+        for node in [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in (*ours, None)]:
+            tree.nodes.remove(node)
+    settings.view_scenes.clear()
+    for each in ours:
+        remove(each)
+
+
+def follow(scene):
+    """Bring the view scenes in line with `scene` as it is now: its name, its settings."""
+    mirror(scene)
+    for index, each in enumerate(_own(scene)):
+        name = _name(scene, index)
+        if not each.name.startswith(name):  # Blender may have put a number behind it
+            each.name = name
+
+
+def mirror(scene):
+    """Give the view scenes what decides how the surfaces of `scene` look."""
+    layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    for each in _own(scene):
+        own = each.view_layers[0]
+        for source, target, names in ((scene, each, _SCENE), (scene.render, each.render, _RENDER),
+                                      (layer, own, _LAYER)):
+            for name in names:
+                _assign(target, name, getattr(source, name))
+        for prop in scene.eevee.bl_rna.properties:
+            if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
+                _assign(each.eevee, prop.identifier,
+                        _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier)))
+        _assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
+        _assign(each, "background_set", scene)
+
+
+def faults(scene):
+    """Whether something of what connect() makes is missing."""
+    ours = _own(scene)
+    if len(ours) != _held(scene) or any(each is None or each.camera is None for each in ours):
+        return True
+    tree = scene.compositing_node_group
+    found = [node.scene for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours] if tree else []
+    return found != ours
+
+
+def begin(scene):
+    """The render of `scene` begins."""
+    global _rendered
+    _rendered = scene.session_uid
+
+
+def reset(*_):
+    """No view is needed until the scout says so."""
+    global _rendered
+    _rendered = None
+    for each in bpy.data.scenes:
+        if each.get(MARK) in {"view", "scout"} and each.library is None:
+            _assign(each.view_layers[0], "use", each.get(MARK) == "scout")
+
+
+def is_rendered(scene):
+    """Whether it is `scene` that is rendered, and not another whose compositor shows it as well."""
+    return scene.session_uid == _rendered
+
+
+@dataclass(frozen=True)
+class Lens:
+    """What a view sees. pixel: the size of one, at depth 1 (perspective) or in metres (orthographic). centre: (x, y), where
+    the optical axis meets the view, in pixels from the view's middle. near, far: metres."""
+
+    pixel: float
+    near: float
+    far: float
+    centre: tuple = (0.0, 0.0)
+    orthographic: bool = False
+
+
+def lens_of(source, depsgraph, scene):
+    """Lens of an evaluated camera of the user's, as if the view were its whole frame."""
+    width, height = passes.window(scene)[0][2:]
+    seen = passes.camera_at(source.matrix_world, source, depsgraph, (0, 0), (width, height), (1.0, 1.0))
+    axis = -seen.offset / seen.scale - (width / 2, height / 2)
+    return Lens(seen.scale[0], source.data.clip_start, source.data.clip_end, tuple(axis), seen.orthographic)
+
+
+def wide_lens(scene, near, far):
+    """Lens of an automatic view."""
+    return Lens(2 * np.tan(FIELD / 2) / max(passes.window(scene)[0][2:]), near, far)
+
+
+def half_field(scene):
+    """Tangents of half the field of an automatic view, across and up."""
+    size = np.array(passes.window(scene)[0][2:])
+    return np.tan(FIELD / 2) * size / size.max()
+
+
+def pose(view, scene, matrix, lens):
+    """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
+
+    Blender renders it at the scene's resolution and, where that has one, within its render border. The camera is made so
+    that this border holds the whole view."""
+    camera, data = view.camera, view.camera.data
+    place, rotation, _ = Matrix(matrix).decompose()
+    (x, y, width, height), full = passes.window(scene)
+    longer = max(full)
+    values = {"type": "ORTHO" if lens.orthographic else "PERSP", "sensor_fit": "AUTO", "lens": 500.0,
+              "sensor_width": 500.0 * lens.pixel * longer, "ortho_scale": lens.pixel * longer,
+              "shift_x": (full[0] / 2 - x - width / 2 - lens.centre[0]) / longer,
+              "shift_y": (full[1] / 2 - y - height / 2 - lens.centre[1]) / longer,
+              "clip_start": lens.near, "clip_end": lens.far}
+    for name, value in values.items():
+        _assign(data, name, value)
+    for name, value in (("rotation_mode", "QUATERNION"), ("location", place), ("rotation_quaternion", rotation)):
+        _assign(camera, name, value)
+    _assign(view.render, "use_border", scene.render.use_border)
+    _assign(view.render, "use_crop_to_border", scene.render.use_crop_to_border)
+    _assign(view.view_layers[0], "use", True)
+
+
+def placed(scene):
+    """The placement.Placement that the file holds for `scene`, or None."""
+    stored = scout(scene).get(PLACED)
+    if not stored or len(stored["poses"]) % 16:
+        return None
+    return placement.Placement(list(np.array(stored["poses"], float).reshape(-1, 4, 4)), list(stored["coverage"]),
+                               stored["clearance"])
+
+
+def keep_placed(scene, found):
+    """Store a placement in the file: the frames to come begin with it."""
+    scout(scene)[PLACED] = {"poses": np.array(found.poses, float).ravel().tolist(), "coverage": list(found.coverage),
+                            "clearance": found.clearance}
+
+
+def drop(view):
+    """Leave a view scene out of this frame."""
+    _assign(view.view_layers[0], "use", False)
+
+
+def posed(scene):
+    """The view scenes that are rendered in this frame, in their order."""
+    tree = scene.compositing_node_group
+    shown = [node.scene for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and not node.mute]
+    return [each for each in scenes(scene) if each in shown and each.view_layers[0].use]
+
+
+def camera(view, depsgraph, scene):
+    """light.Camera of a view that is rendered together with `scene`. Its pose is what pose() set: nothing animates
+    it, so that no depsgraph need have heard of it."""
+    place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
+    (x, y, _, _), full = passes.window(scene)
+    return passes.camera_at(place, view.camera, depsgraph, (x, y), full, (1.0, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Saved:
+    """A view of a finished frame. path: a file that passes.save() wrote. layer: its view layer. window: as passes.window()
+    gave it."""
+
+    path: str
+    layer: str
+    window: tuple
+    camera: light.Camera
+
+    def load(self):
+        """light.Passes of the view. Raises status.Problem."""
+        return passes.load(self.path, self.layer, self.window)
+
+
+def save(scene, depsgraph, warn):
+    """[Saved] of the views that were rendered for this frame of `scene`. warn: called with a text where one fails."""
+    found = []
+    for view in posed(scene):
+        try:
+            path = passes.save(view)
+        except Problem as problem:
+            warn(say("A view could not be used: {}", say(*problem.args)))
+            continue
+        found.append(Saved(path, view.view_layers[0].name, passes.window(scene)[0], camera(view, depsgraph, scene)))
+    return found
+
+
+def unusable(thing):
+    """Why an object that the user lists can't be a view, as a sentence for people; empty where it can."""
+    if thing is None:
+        return say("A view in the list has no camera. Choose one, or remove the line")
+    if thing.type != "CAMERA":
+        return say('The view "{}" is no camera, and is left out. Choose a camera in its place', thing.name)
+    if thing.data.type not in {"PERSP", "ORTHO"}:
+        return say('The view "{}" is panoramic, and is left out. Set its Lens Type to Perspective or Orthographic', thing.name)
+    return ""
+
+
+def remove(view):
+    """Remove one of these scenes, with its camera."""
+    for camera_object in [each for each in view.collection.objects if each.type == "CAMERA"]:
+        bpy.data.cameras.remove(camera_object.data)  # and the object with it
+    bpy.data.scenes.remove(view)
+
+
+def _own(scene):
+    return [each.scene for each in scene.afterlight.view_scenes if each.scene is not None]
+
+
+def _held(scene):
+    """How many scenes `scene` needs: the scout, and one for each view."""
+    views = wanted(scene)
+    return views + 1 if views else 0
+
+
+def _ensure_scenes(scene):
+    """Returns the scenes that are no longer, or never were, this scene's: those of which it is a copy."""
+    from . import wiring
+    held = scene.afterlight.view_scenes
+    strangers = [each.scene for each in held if each.scene is not None and wiring.source(each.scene) != scene]
+    if strangers or any(each.scene is None for each in held):
+        for each in set(_own(scene)) - set(strangers):
+            remove(each)
+        held.clear()
+    while len(held) > _held(scene):
+        remove(held[-1].scene)
+        held.remove(len(held) - 1)
+    while len(held) < _held(scene):
+        made = _new(scene, len(held))
+        held.add().scene = made  # before it is evaluated: what is nobody's is cleaned up
+        # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated. It has no
+        # background yet: a whole scene evaluated here would stay in memory.
+        made.view_layers[0].update()
+        made.view_layers[0].use = made.get(MARK) == "scout"
+    for each in _own(scene):
+        if each.camera is None:
+            _give_camera(each)
+    return strangers
+
+
+def _new(scene, index):
+    made = bpy.data.scenes.new(_name(scene, index))
+    made[MARK] = "view" if index else "scout"
+    _give_camera(made)
+    made.render.engine = "BLENDER_EEVEE" if index else SCOUT_ENGINE
+    made.render.resolution_x = made.render.resolution_y = 4  # it is always rendered at the lit scene's
+    layer = made.view_layers[0]
+    for _, switch, _, _ in passes.PASSES:
+        setattr(layer, switch, bool(index))
+    return made
+
+
+def _give_camera(view):
+    view.camera = bpy.data.objects.new(view.name, bpy.data.cameras.new(view.name))
+    view.collection.objects.link(view.camera)
+
+
+def _name(scene, index):
+    return (VIEW_NAME.format(index, scene.name) if index else SCOUT_NAME.format(scene.name))[:250]
+
+
+def _ensure_nodes(tree, ours):
+    found = [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours]
+    if [node.scene for node in found] == ours:
+        return
+    for node in found:
+        tree.nodes.remove(node)
+    for index, each in enumerate(ours):
+        node = nodes.view_node(tree, each)
+        node.location = (-700, -400 - 50 * index)
+
+
+def _assign(data, name, value):
+    """Set only what differs: setting tags the file as edited, and Blender would call us again."""
+    old = getattr(data, name)
+    if (tuple(old) != tuple(value)) if hasattr(old, "__len__") and not isinstance(old, str) else old != value:
+        setattr(data, name, value)

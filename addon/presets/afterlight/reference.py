@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+settings = bpy.context.scene.afterlight
+
+settings.method = "RADIOSITY"
+settings.start = "FULL"
+settings.draws = 64
+settings.bounces = 8
+settings.use_visibility = True
+settings.views = "AUTOMATIC"
+settings.view_count = 9

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Smooth: the noise of the draws out of the base's irradiance, by a mean over the texels around that lie on the same
+// surface.
+
+#define SMOOTH_RADIUS 2
+
+void main()
+{
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (!is_inside(texel, level_size(0))) {
+    return;
+  }
+  Surfel receiver = unpack_surfel(texelFetch(surfels, texel, 0), texel, 0);
+  vec4 sum = texelFetch(irradiance, texel, 0);
+  float weights = 1.0;
+  vec3 normal = direction(receiver.vector_area);
+  for (int y = -SMOOTH_RADIUS; y <= SMOOTH_RADIUS; y++) {
+    for (int x = -SMOOTH_RADIUS; x <= SMOOTH_RADIUS; x++) {
+      ivec2 tap = texel + ivec2(x, y);
+      if ((x == 0 && y == 0) || receiver.area <= 0.0 || !is_inside(tap, level_size(0))) {
+        continue;
+      }
+      Surfel surfel = unpack_surfel(texelFetch(surfels, tap, 0), tap, 0);
+      if (surfel.area <= 0.0) {
+        continue;
+      }
+      float height = dot(normal, surfel.place - receiver.place);
+      float cosine = dot(normal, direction(surfel.vector_area));
+      float near = exp(-float(x * x + y * y) / float(SMOOTH_RADIUS * SMOOTH_RADIUS));
+      float weight = near * (bilateral_weight(vec4(height), vec4(cosine), surfel.area).x - LEAST_WEIGHT);
+      sum += weight * texelFetch(irradiance, tap, 0);
+      weights += weight;
+    }
+  }
+  imageStore(total_out, texel, sum / weights);
+}
