@@ -11,7 +11,7 @@ def look_closer():
     """Most of the box is out of the picture."""
     scene = bpy.context.scene
     scene.camera.location, scene.camera.rotation_euler = (-0.5, 0, 0), (1.5707963, 0, 1.5707963)
-    scene.afterlight.view_count, scene.afterlight.views = 5, "AUTOMATIC"
+    scene.afterlight.method, scene.afterlight.view_count, scene.afterlight.views = "RADIOSITY", 5, "AUTOMATIC"
 
 
 def placed():
