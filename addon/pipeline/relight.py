@@ -83,7 +83,8 @@ def obstacle(scene):
     found = kept(scene)
     if found is None:
         return say("There is no render of this scene to light again. Press F12 first")
-    if not os.path.exists(found.path) or os.path.getsize(found.path) != found.size:
+    if not os.path.exists(found.path) or os.path.getsize(found.path) != found.size or not all(
+            os.path.exists(view.path) for view in found.views):
         return say("The kept passes were deleted from the temporary folder. Press F12")
     if (found.window, found.full) != passes.window(scene):
         return say("The resolution or the render region has changed since the last render. Press F12")
