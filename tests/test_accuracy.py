@@ -204,7 +204,7 @@ def test_a_run_of_it_all(shot, tmp_path):
     out = tmp_path / "out"
     run = subprocess.run(
         [sys.executable, "-m", "benchmarks.accuracy", good, blind, broken, absent, "--out", out, "--size", "48x27",
-         "--samples", "2", "--rounds", "1", "--bounces", "2", "--presets", "draft", "--first-samples", "64",
+         "--samples", "2", "--rounds", "1", "--bounces", "2", "--presets", "paper", "--first-samples", "64",
          "--most-samples", "256"], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode in (1, 2), run.stderr  # 1: at so few samples a number may be refused
     found = {scene["name"]: scene for scene in json.loads((out / "accuracy.json").read_text())["scenes"]}
@@ -212,13 +212,13 @@ def test_a_run_of_it_all(shot, tmp_path):
     assert "skipped" in found["broken"] and "Traceback" not in run.stderr
     rows = {row["name"]: row for row in found["good"]["tables"][0]["rows"]}
     assert rows["EEVEE"]["indirect"]["energy"] == 0 and rows["EEVEE"]["indirect"]["l1"] == pytest.approx(1)
-    lit = rows["Afterlight, Draft"]
+    lit = rows["Afterlight, Paper"]
     assert 0.2 < lit["indirect"]["energy"] < 1.2 and lit["indirect"]["l1"] < 0.9 and lit["cost"] > 0
     gains = [row["gain"] for row in found["good"]["causes"] if row["name"] not in ("total", "noise of the visibility rays")]
     total, = (row["gain"] for row in found["good"]["causes"] if row["name"] == "total")
     assert sum(gains) == pytest.approx(total, abs=1e-6)
     page = (out / "accuracy.md").read_text()
-    assert "Not measured" in page and "Afterlight, Draft" in page
+    assert "Not measured" in page and "Afterlight, Paper" in page
     for name in ("good.png", "error_against_cost.png"):
         assert (out / name).stat().st_size > 5000
     assert good.read_bytes() == before
