@@ -154,9 +154,10 @@ class AfterlightEngine(bpy.types.RenderEngine):
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file
         frame = passes.load(path, shot.layer, shot.window)
-        further = [light.View(view.load, view.camera) for view in (shot.again.views if shot.again else self.views)]
+        saved = shot.again.views if shot.again else self.views
+        further = [light.View(view.load, view.camera) for view in saved]
         shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings, len(further)),
-                       "passes file": os.path.getsize(path)}
+                       "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}
         shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
@@ -179,9 +180,12 @@ class AfterlightEngine(bpy.types.RenderEngine):
         now = time.perf_counter()
         if stage != self.told[0] or now > self.told[1] + TELL:
             self.told = stage, now
-            self.update_stats("Afterlight", f"{say(status.in_words(stage))}, {fraction:.0%}")
-            self.update_progress(fraction)
+            self._tell(f"{say(status.in_words(stage))}, {fraction:.0%}", fraction)
         return self.test_break()
+
+    def _tell(self, text, fraction):
+        self.update_stats("Afterlight", text)
+        self.update_progress(fraction)
 
     def _hand_back(self, shot, picture):
         """The indirect light into our pass of the layer; black where there is none."""
@@ -194,9 +198,16 @@ class AfterlightEngine(bpy.types.RenderEngine):
 
 
 def register():
+    AfterlightEngine.idle = False
     bpy.utils.register_class(AfterlightEngine)
 
 
 def unregister():
+    """A render that is under way is lit no more; Blender crashes if its engine goes before it ends."""
+    AfterlightEngine.idle = True
+    turns.after_render(_let_go)
+
+
+def _let_go():
     bpy.utils.unregister_class(AfterlightEngine)
     light.release()

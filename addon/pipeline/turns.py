@@ -43,6 +43,8 @@ def run(call):
     when the render is to stop, or nobody makes calls any more."""
     if _is_main():
         return call()
+    if _stopped():
+        raise light.Cancelled
     future = Future()
     _calls.put((future, call))
     while not future.done():
@@ -60,6 +62,14 @@ def later(call):
         call()
     else:
         _calls.put((Future(), call))
+
+
+def after_render(call):
+    """Make a call that returns None when no render is under way: now, or soon."""
+    if bpy.app.background or not bpy.app.is_job_running("RENDER"):
+        call()
+    else:
+        bpy.app.timers.register(lambda: IDLE if bpy.app.is_job_running("RENDER") else call(), persistent=True)
 
 
 def _is_main():
