@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ..translations import say
-from . import checks, passes, placement, rays, relight, status, views, wiring
+from . import checks, passes, placement, rays, relight, status, turns, views, wiring
 from .picture import Picture
 from .status import Problem
 
@@ -117,4 +117,5 @@ def register():
 
 
 def unregister():
-    bpy.utils.unregister_class(AfterlightScout)
+    """When the render ends, if one is under way: Blender frees the engines of all renders when any engine's class goes."""
+    turns.after_render(lambda: bpy.utils.unregister_class(AfterlightScout))
