@@ -58,7 +58,8 @@ def stalls(window):
     for found, pairs in ((gaps, zip(ticks, ticks[1:])), (longest_calls, [call[1:] for call in calls])):
         for earlier, later in pairs:
             # It belongs to the stage that had most of it.
-            pieces = [stage_at(earlier + (later - earlier) * (piece + 0.5) / 50, spans, begin, end) for piece in range(50)]
+            moments = [earlier + (later - earlier) * (piece + 0.5) / 50 for piece in range(50)]
+            pieces = [stage_at(moment, spans, begin, end) for moment in moments]
             stage = max(set(pieces), key=pieces.count)
             found[stage] = max(found.get(stage, 0), later - earlier)
     totals = {}

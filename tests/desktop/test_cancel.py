@@ -42,7 +42,9 @@ def lit(window, afterlight):
     return steps.result(window, "before")
 
 
-def test_in_ours(window, lit):
+@pytest.mark.parametrize("method", ["PAPER", "RADIOSITY"])
+def test_in_ours(window, lit, method):
+    window.run(steps.use, method)
     window.run(steps.long_gather)
     window.value("remember()")
     steps.into_the_gather(window)
@@ -53,6 +55,7 @@ def test_in_ours(window, lit):
     assert window.value("changed()") == []
     left = steps.result(window, "left")
     window.run(quick)
+    window.run(steps.use, "PAPER")
     window.render()
     assert np.array_equal(steps.result(window, "after"), lit)
     assert left.shape == (360, 640, 3) and 0 < np.mean(left) < 0.9 * np.mean(lit)

@@ -45,6 +45,6 @@ def test_switched_off_in_the_middle(another):
     window.run(steps.long_gather)
     steps.into_the_gather(window)
     window.run(switch_off)
-    window.wait("not rendering()", 60)
+    window.wait("not rendering() and not hasattr(bpy.types, 'AfterlightEngine')", 60)
     window.render()
     assert "Traceback" not in window.log()

@@ -5,17 +5,19 @@ import steps
 
 
 def listen():
-    """Note what the engine has Blender show in `told`, as (seconds, text) and (seconds, share)."""
+    """Note the words and the share that the engine has Blender show in `told`."""
     from bl_ext.user_default.afterlight.addon.pipeline.engine import AfterlightEngine as engine
-    names["told"] = told = []
-    show, move = bpy.types.RenderEngine.update_stats, bpy.types.RenderEngine.update_progress
-    engine.update_stats = lambda self, *texts: (told.append((time.perf_counter(), ", ".join(texts))), show(self, *texts))
-    engine.update_progress = lambda self, share: (told.append((time.perf_counter(), share)), move(self, share))
+    told, tell = names["told"], names["tell"] = [], engine._tell
+
+    def tell_us_too(self, text, fraction):
+        told.append((text, fraction))
+        tell(self, text, fraction)
+    engine._tell = tell_us_too
 
 
 def listen_no_more():
     from bl_ext.user_default.afterlight.addon.pipeline.engine import AfterlightEngine as engine
-    del engine.update_stats, engine.update_progress
+    engine._tell = names["tell"]
     return names["told"]
 
 
@@ -31,8 +33,8 @@ def test_blender_shows_our_stages_by_name(window, afterlight):
         window.wait("not rendering()", 120)
     finally:
         told = window.run(listen_no_more)
-    texts = [text.removeprefix("Afterlight, ").split(",")[0] for _, text in told if isinstance(text, str)]
+    texts = [text.split(",")[0] for text, _ in told]
     assert [text for text, before in zip(texts, [""] + texts) if text != before] == [
         "Saving passes", "Upload", "Pyramid", "Gather", "Upsample"]
-    shares = [share for _, share in told if not isinstance(share, str)]
+    shares = [share for _, share in told]
     assert shares == sorted(shares) and shares[-1] == 1 and len(set(shares)) > 5

@@ -2,9 +2,10 @@
 """A person installs Afterlight, ticks the box and presses F12: the picture is the one that `blender -b` makes."""
 
 import numpy as np
+import pytest
 import steps
 
-LIT = {}  # the picture by backend
+LIT = {}  # the picture by method and backend
 
 
 def test_install_and_find_the_panel(window, afterlight):
@@ -13,22 +14,25 @@ def test_install_and_find_the_panel(window, afterlight):
     window.picture("panel")
 
 
-def test_picture_is_that_of_the_command_line(window, afterlight):
+@pytest.mark.parametrize("method", ["PAPER", "RADIOSITY"])
+def test_picture_is_that_of_the_command_line(window, afterlight, method):
     """Bit for bit; and it is not that of EEVEE alone."""
     steps.new_box(window)
     window.render()
     plain = steps.result(window, "plain")
+    window.run(steps.use, method)
     steps.tick(window)
     window.render()
     window.picture("rendered")
     lit = steps.result(window, "lit")
     assert window.value("bpy.context.scene.afterlight.report") == ""
     assert np.all(lit >= plain) and np.mean(lit) > 1.2 * np.mean(plain)
-    assert np.array_equal(lit, steps.headless(window, "lit"))
-    LIT[window.computer.backend] = lit
-    for backend, other in LIT.items():
-        print(f"largest difference to {backend}: {np.max(np.abs(lit - other)):.2g}")
-        np.testing.assert_allclose(lit, other, rtol=0, atol=1e-5)
+    assert np.array_equal(lit, steps.headless(window, f"lit_{method}"))
+    for (other_method, backend), other in LIT.items():
+        if other_method == method:
+            print(f"{method}: largest difference to {backend}: {np.max(np.abs(lit - other)):.2g}")
+            np.testing.assert_allclose(lit, other, rtol=0, atol=1e-5)
+    LIT[method, window.computer.backend] = lit
 
 
 def test_undo_redo_save_reopen(window, afterlight):
