@@ -181,10 +181,13 @@ class Case:
     room: Room
     light: object
 
-    def __post_init__(self):
-        self.views = self.room.views(self.light)
-        self.truth = self.room.truth(self.light, self.room.patch)
-        *_, self.column, self.row = self.room.seen(self.light)
+    @cached_property
+    def views(self):
+        return self.room.views(self.light)
+
+    @cached_property
+    def truth(self):
+        return self.room.truth(self.light, self.room.patch)
 
     def measure(self, seeds=SEEDS, **settings):
         """(error, energy, cost in seconds of computing), means over seeds, the least cost."""
@@ -200,7 +203,8 @@ class Case:
         return np.mean(errors), np.mean(energies), min(costs)
 
     def compared(self, picture):
-        mine = picture[self.row, self.column].astype(float)
+        *_, column, row = self.room.seen(self.light)
+        mine = picture[row, column].astype(float)
         return np.abs(mine - self.truth).sum() / self.truth.sum(), mine.sum() / self.truth.sum()
 
     @cached_property
@@ -284,12 +288,42 @@ def bounce_draws(cases):
          [(f"{g} x {c}", dict(BOUNCE_GROUPS=g, BOUNCE_CANDIDATES=c), {}) for g, c in pairs])
 
 
+def ways(cases):
+    """What the depth maps take for blocked and for free, of ways between patches that face each other."""
+    print("\n| `STEPS` | `STEEPEST` | thin walls | " + " | ".join(
+        f"{case.room.name}: free ways blocked, hidden ways free" for case in cases) + " |\n" + "|---" * (len(cases) + 3) + "|")
+    usual = views_64.STEEPEST
+    for steps, steepest, walls in [(8, usual, True), (16, usual, True), (24, usual, True), (32, usual, True), (24, 1.0, True),
+                                   (24, 1.05, True), (24, 1.5, True), (24, usual, False)]:
+        views_64.STEEPEST = steepest
+        found = [misjudged(case, steps, walls) for case in cases]
+        print(f"| {steps} | {steepest} | {'yes' if walls else 'no'} | " + " | ".join(
+            f"{blocked:.1%}, {free:.1%}" for blocked, free in found) + " |", flush=True)
+    views_64.STEEPEST = usual
+
+
+def misjudged(case, steps, walls, count=20_000):
+    """(share of the free ways taken for blocked, share of the hidden ones taken for free)"""
+    rng = np.random.default_rng(1)
+    place, normal, area = case.room.patches(case.room.patch / 4)
+    start, end = rng.choice(len(place), (2, count), p=area / area.sum())
+    path = place[end] - place[start]
+    facing = ((path * normal[start]).sum(-1) > 1e-6) & ((path * normal[end]).sum(-1) < -1e-6)
+    start, end = place[start[facing]], place[end[facing]]
+    origin = case.views[0].camera.position
+    hidden, crossed = views_64.what_blocks(views_64.eyes_of(case.views, 1), start - origin, end - origin, rng.random(len(start)),
+                                           steps)
+    blocked, true = hidden | crossed if walls else hidden, rooms.is_hidden(start, end, case.room.solids)
+    return blocked[~true].mean(), 1 - blocked[true].mean()
+
+
 TABLES = {
     "causes": causes, "draws": draws, "bounce_draws": bounce_draws, "steps": constant("STEPS", (8, 16, 24, 32)),
     "by_area": constant("BY_AREA", (0.1, 0.25, 0.5, 0.75, 1.0)), "emitter": constant("EMITTER", (1, 2, 4, 8)),
     "receiver": constant("RECEIVER", (4, 8, 16, 32)), "smooth": constant("SMOOTH_RADIUS", (0, 1, 2, 3, 4)),
     "depths": constant("DEPTHS_ACROSS", (80, 160, 320)), "margin": constant("MARGIN", (0.0, 0.02, 0.05)),
-    "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)), "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "setup": setup}
+    "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
+    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "setup": setup}
 
 
 def main():
