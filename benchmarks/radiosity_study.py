@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The measurements that decided the light between several views, printed as the tables of docs/views_method.md.
 
-    .venv/bin/python -m benchmarks.radiosity_study [TABLE ...]    ten minutes for all
+    .venv/bin/python -m benchmarks.radiosity_study [TABLE ...]    a quarter of an hour for all
 
 Rooms of boxes under a point lamp, traced exactly, without Blender (benchmarks/opengl.py). The truth is a radiosity solution
 of the same number of bounces: all pairs of patches of all surfaces, and of these and pixels of the main view, in float64, with
@@ -30,7 +30,6 @@ import view_fixtures as rooms  # noqa: E402
 SIZE, EVERY = (320, 240), 5      # pixels of a view; every how many, on both axes, the truth is known
 FIELD_OF_VIEW = 1.75             # radians across
 BOUNCES = 4
-SEEDS = 1
 PAIRS = 1 << 20                  # at a time
 
 
@@ -189,29 +188,23 @@ class Case:
     def truth(self):
         return self.room.truth(self.light, self.room.patch)
 
-    def measure(self, seeds=SEEDS, **settings):
-        """(error, energy, cost in seconds of computing), means over seeds, the least cost."""
-        rows = []
-        for seed in range(seeds):
-            start = time.process_time()
-            with opengl.timed(self.light) if opengl.queries_cover_compute() else nullcontext({}) as passes:
-                picture = self.light.gather_views(self.views, self.light.Draws(
-                    **dict(start=4, bounces=BOUNCES, seed=1000 * seed) | settings))
-            spent = sum(map(sum, passes.values())) or time.process_time() - start
-            rows.append((*self.compared(picture), spent))
-        errors, energies, costs = zip(*rows)
-        return np.mean(errors), np.mean(energies), min(costs)
+    def gather(self, **settings):
+        """The picture."""
+        return self.light.gather_views(self.views, self.light.Draws(**dict(start=4, bounces=BOUNCES, seed=0) | settings))
 
-    def compared(self, picture):
+    def seconds(self, **settings):
+        """On the GPU; of computing with Mesa's software driver, whose timer queries do not see it."""
+        start = time.process_time()
+        with opengl.timed(self.light) if opengl.queries_cover_compute() else nullcontext({}) as passes:
+            self.gather(**settings)
+        return sum(map(sum, passes.values())) or time.process_time() - start
+
+    def measure(self, **settings):
+        """(error, energy)"""
+        picture = self.gather(**settings)
         *_, column, row = self.room.seen(self.light)
         mine = picture[row, column].astype(float)
         return np.abs(mine - self.truth).sum() / self.truth.sum(), mine.sum() / self.truth.sum()
-
-    @cached_property
-    def usual(self):
-        """The cost at the defaults."""
-        self.measure(1)
-        return self.measure()[2]
 
 
 @contextmanager
@@ -242,14 +235,43 @@ def changed(light, **constants):
 
 def rows(cases, title, configurations):
     """A table: a row for each (label, constants, settings)."""
-    print(f"\n| {title} | " + " | ".join(f"{case.room.name}: error, energy" for case in cases) + " | cost |")
-    print("|---" * (len(cases) + 2) + "|")
+    print(f"\n| {title} | " + " | ".join(f"{case.room.name}: error, energy" for case in cases) + " |")
+    print("|---" * (len(cases) + 1) + "|")
     for label, constants, settings in configurations:
         with changed(cases[0].light, **constants):
             measured = [case.measure(**settings) for case in cases]
-        cost = np.mean([spent / case.usual for (_, _, spent), case in zip(measured, cases)])
-        print(f"| {label} | " + " | ".join(f"{error:.3f}, {energy:.3f}" for error, energy, _ in measured) + f" | {cost:.2f} |",
-              flush=True)
+        print(f"| {label} | " + " | ".join(f"{error:.3f}, {energy:.3f}" for error, energy in measured) + " |", flush=True)
+
+
+def costs(cases):
+    """Of the last room; each beside runs at the defaults, the least of three."""
+    print("\n| cost of | |\n|---|---|")
+    for label, constants, settings in [
+            *((f"{g} x {c}", {}, dict(groups=g, candidates=c)) for g, c in ((4, 16), (8, 16), (16, 4), (16, 64), (32, 16), (64, 16))),
+            *((f"bounces {g} x 8", dict(BOUNCE_GROUPS=g), {}) for g in (4, 8, 32)),
+            *((f"`{name}` {value}", {name: value}, {}) for name, value in (
+                ("STEPS", 8), ("STEPS", 16), ("STEPS", 32), ("EMITTER", 1), ("EMITTER", 4), ("RECEIVER", 4), ("RECEIVER", 16),
+                ("DEPTHS_ACROSS", 160), ("SMOOTH_RADIUS", 4))),
+            ("one bounce", {}, dict(bounces=1)), ("no visibility", {}, dict(visibility=False)),
+            ("no test for thin walls", {"is_crossed": "0u"}, {}), ("start 2", {}, dict(start=2)), ("start 1", {}, dict(start=1))]:
+        spent, usual = [], []
+        for _ in range(3):
+            usual.append(cases[-1].seconds())
+            with changed(cases[0].light, **constants):
+                cases[-1].gather(**dict(settings, bounces=2, groups=1))    # compiles what was changed
+                spent.append(cases[-1].seconds(**settings))
+        print(f"| {label} | {min(spent) / min(usual):.2f} |", flush=True)
+
+
+def seeds(cases):
+    """How far the numbers of one seed are from those of another."""
+    print("\n| 8 seeds | " + " | ".join(f"{case.room.name}: error, energy" for case in cases) + " |")
+    print("|---" * (len(cases) + 1) + "|")
+    for groups in (4, 8, 16):
+        with changed(cases[0].light, BOUNCE_GROUPS=groups):
+            found = [np.array([case.measure(seed=1000 * seed) for seed in range(8)]) for case in cases]
+        print(f"| bounces {groups} x 8 | " + " | ".join("{:.3f} +- {:.3f}, {:.3f} +- {:.3f}".format(
+            *np.stack([some.mean(0), some.std(0, ddof=1)], -1).ravel()) for some in found) + " |", flush=True)
 
 
 def constant(name, values):
@@ -323,7 +345,8 @@ TABLES = {
     "receiver": constant("RECEIVER", (4, 8, 16, 32)), "smooth": constant("SMOOTH_RADIUS", (0, 1, 2, 3, 4)),
     "depths": constant("DEPTHS_ACROSS", (80, 160, 320)), "margin": constant("MARGIN", (0.0, 0.02, 0.05)),
     "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
-    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "setup": setup}
+    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "setup": setup,
+    "seeds": seeds, "costs": costs}
 
 
 def main():
