@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The measurements that decided the light between several views, printed as the tables of docs/views_method.md.
 
-    .venv/bin/python -m benchmarks.radiosity_study [TABLE ...]    ten minutes for all
+    .venv/bin/python -m benchmarks.radiosity_study [TABLE ...]    a quarter of an hour for all
 
 Rooms of boxes under a point lamp, traced exactly, without Blender (benchmarks/opengl.py). The truth is a radiosity solution
 of the same number of bounces: all pairs of patches of all surfaces, and of these and pixels of the main view, in float64, with
@@ -30,7 +30,6 @@ import view_fixtures as rooms  # noqa: E402
 SIZE, EVERY = (320, 240), 5      # pixels of a view; every how many, on both axes, the truth is known
 FIELD_OF_VIEW = 1.75             # radians across
 BOUNCES = 4
-SEEDS = 1
 PAIRS = 1 << 20                  # at a time
 
 
@@ -181,33 +180,31 @@ class Case:
     room: Room
     light: object
 
-    def __post_init__(self):
-        self.views = self.room.views(self.light)
-        self.truth = self.room.truth(self.light, self.room.patch)
-        *_, self.column, self.row = self.room.seen(self.light)
-
-    def measure(self, seeds=SEEDS, **settings):
-        """(error, energy, cost in seconds of computing), means over seeds, the least cost."""
-        rows = []
-        for seed in range(seeds):
-            start = time.process_time()
-            with opengl.timed(self.light) if opengl.queries_cover_compute() else nullcontext({}) as passes:
-                picture = self.light.gather_views(self.views, self.light.Draws(
-                    **dict(start=4, bounces=BOUNCES, seed=1000 * seed) | settings))
-            spent = sum(map(sum, passes.values())) or time.process_time() - start
-            rows.append((*self.compared(picture), spent))
-        errors, energies, costs = zip(*rows)
-        return np.mean(errors), np.mean(energies), min(costs)
-
-    def compared(self, picture):
-        mine = picture[self.row, self.column].astype(float)
-        return np.abs(mine - self.truth).sum() / self.truth.sum(), mine.sum() / self.truth.sum()
+    @cached_property
+    def views(self):
+        return self.room.views(self.light)
 
     @cached_property
-    def usual(self):
-        """The cost at the defaults."""
-        self.measure(1)
-        return self.measure()[2]
+    def truth(self):
+        return self.room.truth(self.light, self.room.patch)
+
+    def gather(self, **settings):
+        """The picture."""
+        return self.light.gather_views(self.views, self.light.Draws(**dict(start=4, bounces=BOUNCES, seed=0) | settings))
+
+    def seconds(self, **settings):
+        """On the GPU; of computing with Mesa's software driver, whose timer queries do not see it."""
+        start = time.process_time()
+        with opengl.timed(self.light) if opengl.queries_cover_compute() else nullcontext({}) as passes:
+            self.gather(**settings)
+        return sum(map(sum, passes.values())) or time.process_time() - start
+
+    def measure(self, **settings):
+        """(error, energy)"""
+        picture = self.gather(**settings)
+        *_, column, row = self.room.seen(self.light)
+        mine = picture[row, column].astype(float)
+        return np.abs(mine - self.truth).sum() / self.truth.sum(), mine.sum() / self.truth.sum()
 
 
 @contextmanager
@@ -238,14 +235,40 @@ def changed(light, **constants):
 
 def rows(cases, title, configurations):
     """A table: a row for each (label, constants, settings)."""
-    print(f"\n| {title} | " + " | ".join(f"{case.room.name}: error, energy" for case in cases) + " | cost |")
-    print("|---" * (len(cases) + 2) + "|")
+    print(f"\n| {title} | " + " | ".join(f"{case.room.name}: error, energy" for case in cases) + " |")
+    print("|---" * (len(cases) + 1) + "|")
     for label, constants, settings in configurations:
         with changed(cases[0].light, **constants):
             measured = [case.measure(**settings) for case in cases]
-        cost = np.mean([spent / case.usual for (_, _, spent), case in zip(measured, cases)])
-        print(f"| {label} | " + " | ".join(f"{error:.3f}, {energy:.3f}" for error, energy, _ in measured) + f" | {cost:.2f} |",
-              flush=True)
+        print(f"| {label} | " + " | ".join(f"{error:.3f}, {energy:.3f}" for error, energy in measured) + " |", flush=True)
+
+
+def costs(cases):
+    """Of the last room; each beside runs at the defaults, the least of two."""
+    print("\n| cost of | |\n|---|---|")
+    for label, constants, settings in [
+            ("64 x 16", {}, dict(groups=64)),
+            *((f"`{name}` {value}", {name: value}, {}) for name, value in (
+                ("BOUNCE_GROUPS", 4), ("BOUNCE_GROUPS", 8), ("BOUNCE_GROUPS", 32), ("STEPS", 16), ("EMITTER", 4), ("RECEIVER", 4),
+                ("RECEIVER", 16))),
+            ("one bounce", {}, dict(bounces=1)), ("no visibility", {}, dict(visibility=False)),
+            ("start 2", {}, dict(start=2)), ("start 1", {}, dict(start=1))]:
+        spent, usual = [], []
+        for _ in range(2):
+            usual.append(cases[-1].seconds())
+            with changed(cases[0].light, **constants):
+                cases[-1].gather(**dict(settings, bounces=2, groups=1))    # compiles what was changed
+                spent.append(cases[-1].seconds(**settings))
+        print(f"| {label} | {min(spent) / min(usual):.2f} |", flush=True)
+
+
+def seeds(cases):
+    """How far the numbers of one seed are from those of another."""
+    print("\n| 8 seeds | " + " | ".join(f"{case.room.name}: error, energy" for case in cases) + " |")
+    print("|---" * (len(cases) + 1) + "|")
+    found = [np.array([case.measure(seed=1000 * seed) for seed in range(8)]) for case in cases]
+    print("| mean +- deviation | " + " | ".join("{:.3f} +- {:.3f}, {:.3f} +- {:.3f}".format(
+        *np.stack([some.mean(0), some.std(0, ddof=1)], -1).ravel()) for some in found) + " |", flush=True)
 
 
 def constant(name, values):
@@ -284,12 +307,43 @@ def bounce_draws(cases):
          [(f"{g} x {c}", dict(BOUNCE_GROUPS=g, BOUNCE_CANDIDATES=c), {}) for g, c in pairs])
 
 
+def ways(cases):
+    """What the depth maps take for blocked and for free, of ways between patches that face each other."""
+    print("\n| `STEPS` | `STEEPEST` | thin walls | " + " | ".join(
+        f"{case.room.name}: free ways blocked, hidden ways free" for case in cases) + " |\n" + "|---" * (len(cases) + 3) + "|")
+    usual = views_64.STEEPEST
+    for steps, steepest, walls in [(8, usual, True), (16, usual, True), (24, usual, True), (32, usual, True), (24, 1.0, True),
+                                   (24, 1.05, True), (24, 1.5, True), (24, usual, False)]:
+        views_64.STEEPEST = steepest
+        found = [misjudged(case, steps, walls) for case in cases]
+        print(f"| {steps} | {steepest} | {'yes' if walls else 'no'} | " + " | ".join(
+            f"{blocked:.1%}, {free:.1%}" for blocked, free in found) + " |", flush=True)
+    views_64.STEEPEST = usual
+
+
+def misjudged(case, steps, walls, count=20_000):
+    """(share of the free ways taken for blocked, share of the hidden ones taken for free)"""
+    rng = np.random.default_rng(1)
+    place, normal, area = case.room.patches(case.room.patch / 4)
+    start, end = rng.choice(len(place), (2, count), p=area / area.sum())
+    path = place[end] - place[start]
+    facing = ((path * normal[start]).sum(-1) > 1e-6) & ((path * normal[end]).sum(-1) < -1e-6)
+    start, end = place[start[facing]], place[end[facing]]
+    origin = case.views[0].camera.position
+    hidden, crossed = views_64.what_blocks(views_64.eyes_of(case.views, 1), start - origin, end - origin, rng.random(len(start)),
+                                           steps)
+    blocked, true = hidden | crossed if walls else hidden, rooms.is_hidden(start, end, case.room.solids)
+    return blocked[~true].mean(), 1 - blocked[true].mean()
+
+
 TABLES = {
     "causes": causes, "draws": draws, "bounce_draws": bounce_draws, "steps": constant("STEPS", (8, 16, 24, 32)),
     "by_area": constant("BY_AREA", (0.1, 0.25, 0.5, 0.75, 1.0)), "emitter": constant("EMITTER", (1, 2, 4, 8)),
     "receiver": constant("RECEIVER", (4, 8, 16, 32)), "smooth": constant("SMOOTH_RADIUS", (0, 1, 2, 3, 4)),
     "depths": constant("DEPTHS_ACROSS", (80, 160, 320)), "margin": constant("MARGIN", (0.0, 0.02, 0.05)),
-    "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)), "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "setup": setup}
+    "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
+    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "setup": setup,
+    "seeds": seeds, "costs": costs}
 
 
 def main():

@@ -365,7 +365,8 @@ def halved(light, wall):
     pytest.param(lambda light: halved(light, 0.01), 0.12, 0.25, 0.3, id="1 cm")])
 def test_ways_against_exact_rays(light, made, most_blocked, most_free, crossed):
     """Of the ways between seen surfaces that are free, few are taken for blocked; most of them pass places that no view sees.
-    Of the blocked ones, few are taken for free; most of them graze an edge, or what hides stands within a step of their end.
+    Of the blocked ones, few are taken for free: they graze an edge, what hides stands within a step of their end, or it is thin,
+    and some view sees it at such a slant that a texel reaches through it.
     The test for walls between two places alone blocks next to no free way, and of the blocked ones at least the share `crossed`."""
     views, solids = made(light)
     staged = stages(light, views, draws(light))
