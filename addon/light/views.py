@@ -7,7 +7,7 @@
     the last one:                            the main view's base gathers; smooth, composite, read back
 
 A surface that several views show counts once, and what stands between two surfaces hides them from each other. The
-sizes below are for frames of any resolution: the cost of views and bounces is the same for all. docs/views.md has what
+sizes below are for frames of any resolution: the cost of views and bounces is the same for all. docs/views_method.md has what
 decided them.
 """
 
