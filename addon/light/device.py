@@ -147,6 +147,7 @@ class Here:
 
 
 place = Here
+_written = None            # what the last dispatch wrote, where somebody will settle() it
 
 
 def on_gpu(function):
@@ -267,6 +268,18 @@ def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, in
     # Blender's context remembers what was bound last by its address. Left bound and freed later, it would be taken
     # for whatever shader gets that address next, and the compositor then crashes in the driver.
     gpu.shader.unbind()
+    if place is not Here and not name.startswith("probe"):
+        global _written
+        _written = textures[made_of.writes]
+
+
+def settle() -> None:
+    """Wait for all that has been dispatched. Blender's windows have a GPU context each, and what one has not finished
+    another need not see: so `place` calls this before it lets go of its turn."""
+    global _written
+    target, _written = _written, None
+    if target is not None:
+        wait(target)
 
 
 def groups(width: int, height: int, shape: tuple[int, int] = SQUARE) -> tuple[int, int]:

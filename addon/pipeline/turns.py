@@ -86,6 +86,8 @@ def _take():
             break
         _make(future, call)
         wait = GAP
+    if wait:
+        light.device.settle()
     if bpy.app.is_job_running("RENDER"):
         return RENDERING
     return IDLE if _open else None
