@@ -6,15 +6,6 @@
 // send if nothing stood in between, stands for all of them, and only it is looked at (resampled importance sampling;
 // Talbot et al. 2005). Unbiased for any number of groups and candidates.
 
-// pi L cos cos A / (pi r^2 + A) without pi L; see form_factor() in gather.glsl. own: the part of A that counts.
-float form_factor(vec3 receiver, vec3 normal, vec3 place, float own, vec3 mean_normal, float area)
-{
-  vec3 path = place - receiver;
-  float square = dot(path, path);
-  float cosines = max(dot(normal, path), 0.0) * max(-dot(mean_normal, path), 0.0);
-  return own * cosines / max(square * (PI * square + area), 1e-37);
-}
-
 void main()
 {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, parameters.band.x);
@@ -34,7 +25,7 @@ void main()
         vec4 first = texelFetch(emitters, record_texel(number, 0, 4), 0);
         vec4 second = texelFetch(emitters, record_texel(number, 1, 4), 0);
         vec4 sent = texelFetch(radiance, record_texel(number, 0, 1), 0);
-        float form = form_factor(place, normal, first.xyz, first.a, second.xyz, second.a);
+        float form = form_factor(place, normal, first.xyz, second.a, second.xyz, first.a);
         float power = abs(sent.r) + abs(sent.g) + abs(sent.b);
         float odds = (views.odds.x * power + views.odds.y) * first.a;
         if (form <= 0.0 || power == 0.0) {

@@ -12,8 +12,8 @@
 #define DEPTH_TOLERANCE 0.02  // of the depth
 #define SLOPE_TOLERANCE 2.0   // texels of the depth map, on a slope
 
-// Does another view show this very surface, from the same side?
-bool shows(int view, vec3 place, vec3 normal, vec3 eye, vec3 projected)
+// Does another view, in whose depth map `depth` is found there, show this very surface, from the same side?
+bool shows(int view, vec3 place, vec3 normal, vec3 eye, vec3 projected, float depth)
 {
   vec3 other = to_eye(view, place);
   if (dot(normal, other) * dot(normal, eye) <= 0.0) {
@@ -22,7 +22,7 @@ bool shows(int view, vec3 place, vec3 normal, vec3 eye, vec3 projected)
   float cosine = max(abs(dot(normal, direction(other))), COSINE_FLOOR);
   float texel = abs(views.projection[view].x) * (is_parallel(view) ? 1.0 : projected.z);
   float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
-  return abs(depth_at(view, projected) - projected.z) < DEPTH_TOLERANCE * projected.z + SLOPE_TOLERANCE * slope * texel;
+  return abs(depth - projected.z) < DEPTH_TOLERANCE * projected.z + SLOPE_TOLERANCE * slope * texel;
 }
 
 // Share of a surface that is this view's.
@@ -32,7 +32,8 @@ float own_share(int own, vec3 place, vec3 normal, float depth)
   vec3 eye = to_eye(own, place);
   for (int view = 0; view < views.depths.w; view++) {
     vec3 projected = project(view, place);
-    if (view != own && depth_at(view, projected) > 0.0 && shows(view, place, normal, eye, projected)) {
+    float found = view == own ? 0.0 : depth_at(view, projected);
+    if (found > 0.0 && shows(view, place, normal, eye, projected, found)) {
       all += 1.0 / shown_area(view, place, normal, projected.z);
     }
   }

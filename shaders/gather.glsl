@@ -6,17 +6,7 @@
 // With as many samples as entries this is entry k itself, the exhaustive sum.
 uint stratum(uint k, uint part, uint random)
 {
-  return (k * part + min(uint(float(random >> 8u) / 16777216.0 * float(part)), part - 1u)) >> 16u;
-}
-
-// Cosine-weighted solid angle over pi: facing disks of area A at distance r see A / (pi r^2 + A) of each other,
-// never more than 1. The vector area V stands for A n' and may be shorter than A: a texel that is not flat.
-float form_factor(vec3 receiver, vec3 normal, vec3 place, float area, vec3 vector_area)
-{
-  vec3 path = place - receiver;
-  float square = dot(path, path);
-  float cosines = max(dot(normal, path), 0.0) * max(-dot(vector_area, path), 0.0);
-  return cosines / max(square * (PI * square + area), 1e-37);
+  return (k * part + min(uint(unit(random) * float(part)), part - 1u)) >> 16u;
 }
 
 void main()
@@ -42,7 +32,7 @@ void main()
       int entry = first + int(stratum(k, part, pcg_output(state)));
       ivec2 other = texel + ivec2(texelFetch(offsets, ivec2(entry % OFFSETS_WIDTH, entry / OFFSETS_WIDTH), 0).xy);
       Surfel emitter = unpack_surfel(texelFetch(surfels, origin + other, 0), other, level);
-      float form = form_factor(receiver.place, normal, emitter.place, emitter.area, emitter.vector_area);
+      float form = form_factor(receiver.place, normal, emitter.place, emitter.area, emitter.vector_area, 1.0);
       // Not 0 times it: beside the level lies what was in the memory before, and that may be NaN.
       gathered += is_inside(other, size) ? form * vec4(emitter.radiance, 1.0) : vec4(0.0);
     }

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What receives: a texel of the main view's base, for the picture.
 
-struct Receiver {
-  vec3 place;        // world, m
-  vec3 normal;
-  bool is_surface;
-};
-
 Receiver receiver_at(ivec2 at)
 {
   Surfel surfel = unpack_surfel(texelFetch(surfels, at, 0), at, 0);

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What receives: a block of any view's pixels, for the light that it will send on.
 
-struct Receiver {
-  vec3 place;        // world, m
-  vec3 normal;
-  bool is_surface;
-};
-
 Receiver receiver_at(ivec2 at)
 {
   ivec4 last = views.receivers[views.depths.w - 1];

@@ -4,6 +4,12 @@
 
 #define NEAREST 1e-4          // m; what is nearer than this lies behind the camera
 
+struct Receiver {
+  vec3 place;        // world, m
+  vec3 normal;
+  bool is_surface;
+};
+
 vec3 to_view(int view, vec3 place)
 {
   vec4 p = vec4(place, 1.0);

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference import (COSINE_FLOOR, FARTHEST, FLATNESS_SHARPNESS, NORMAL_POWER, bottom_first, direction, dot, pixel_centres,
-                       view_place)
+from reference import (COSINE_FLOOR, FARTHEST, FLATNESS_SHARPNESS, NORMAL_POWER, bottom_first, direction, dot, form_factor,
+                       pixel_centres, view_place)
 from reference import radiance as radiance_of
 
 NEAREST = 1e-4
@@ -163,14 +163,6 @@ def receiver_of(grid, receivers):
     return (first + y[:, None] * wide + x).ravel()
 
 
-def form_factor(receiver, normal, place, own, mean_normal, area):
-    """(n.w)+ (-n'.w)+ own / (pi r^2 + A); arrays that broadcast."""
-    path = place - receiver
-    square = dot(path, path)
-    cosines = np.maximum(dot(normal, path), 0) * np.maximum(-dot(mean_normal, path), 0)
-    return own * cosines / np.maximum(square * (np.pi * square + area), 1e-300)
-
-
 def what_blocks(eyes, start, end, jitter, steps):
     """(hidden, crossed), (n,) bool each. hidden: some place on the way lies behind a view's surfaces, and is seen free by none.
     crossed: of two neighbouring places one view sees the first alone, another the second alone, and none both, so that between
@@ -218,7 +210,8 @@ def chances(sent, by_area):
 
 def all_pairs(places, normals, emitters, sent, share_free=1.0):
     """(n, 3): the irradiance of receivers from every emitter. share_free: (n, emitters), or 1 where nothing hides."""
-    form = form_factor(places[:, None], normals[:, None], emitters[:, 0, :3], sent[:, 3], emitters[:, 1, :3], emitters[:, 1, 3])
+    form = form_factor(places[:, None], normals[:, None], emitters[:, 0, :3], emitters[:, 1, 3],
+                       sent[:, 3:] * emitters[:, 1, :3])
     return np.pi * (form * share_free) @ sent[:, :3]
 
 

@@ -102,8 +102,7 @@ class Draws:
     strength: float = 1.0
 
     def __post_init__(self):
-        if self.start not in (1, 2, 4):
-            raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {self.start}")
+        _check_start(self.start)
         if min(self.groups, self.candidates, self.bounces) < 1:
             raise ValueError(f"Groups, candidates and bounces are 1 or more, not {self.groups}, {self.candidates}, "
                              f"{self.bounces}")
@@ -123,9 +122,13 @@ class Settings:
     strength: float
 
     def __post_init__(self):
-        if self.start not in (1, 2, 4):
-            raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {self.start}")
+        _check_start(self.start)
         if self.samples < 0:
             raise ValueError(f"The number of samples must not be negative: {self.samples}")
         if not 2 <= self.radius <= LARGEST_RADIUS:
             raise ValueError(f"The radius must be 2 to {LARGEST_RADIUS} texels, not {self.radius}")
+
+
+def _check_start(start):
+    if start not in (1, 2, 4):
+        raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {start}")

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import device
-from .inputs import Camera, Draws, View
+from .inputs import Draws, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
 DEPTHS_ACROSS = 320        # least texels along a depth map's longer side, and emitters along the main view's
@@ -119,18 +119,23 @@ def step_of(size):
 
 def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
     """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
-    width, height = size
-    step = step_of(size)
-    table, origin = np.zeros((), device.VIEWS), np.asarray(views[0].camera.position, float)
-    table["depths"] = -(-width // step), -(-height // step), step, len(views)
+    table, origin = layout(len(views), size), np.asarray(views[0].camera.position, float)
     table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
-    first = dict.fromkeys(KINDS, 0)
     for index, view in enumerate(views):
         camera = view.camera
         eye = np.asarray(camera.position, float) - origin
         table["rotation"][index] = np.concatenate([camera.rotation, -(camera.rotation @ eye)[:, None]], axis=1)
-        table["projection"][index] = *(np.asarray(camera.scale) * step), *camera.offset
+        table["projection"][index] = *(np.asarray(camera.scale) * step_of(size)), *camera.offset
         table["eye"][index] = *eye, camera.orthographic
+    return table
+
+
+def layout(count: int, size: tuple[int, int]) -> np.ndarray:
+    """A Views block of so many views, with the sizes in it: depth maps, and which records are whose."""
+    width, height = size
+    step, table, first = step_of(size), np.zeros((), device.VIEWS), dict.fromkeys(KINDS, 0)
+    table["depths"] = -(-width // step), -(-height // step), step, count
+    for index in range(count):
         for name, side in zip(KINDS, (step * (EMITTER if index else 1), step * RECEIVER)):
             across, up = -(-width // side), -(-height // side)
             table[name][index] = first[name], across, up, side
@@ -185,9 +190,8 @@ def draw(name, seed, table, target, textures, block=None, after_rows=lambda done
 
 def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
     """As memory.gpu_bytes()."""
-    cameras = [View(None, Camera(np.eye(3), np.ones(2), np.zeros(2)))] * (1 + further)
-    table = view_table(cameras, (width, height), settings)
-    depths = 8 * int(table["depths"][0] * table["depths"][1]) * len(cameras)
+    table = layout(1 + further, (width, height))
+    depths = 8 * int(table["depths"][0] * table["depths"][1]) * (1 + further)
     emitters, receivers = (device.RECORDS_WIDTH * rows_of(table[kind]) for kind in KINDS)
     start = start_of(settings, (width, height))
     base = -(-width // start) * -(-height // start)
