@@ -1,9 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What panels and menus draw, without a window."""
+"""What panels and menus draw, without a window; and the scene and add-on that tests of the interface begin with."""
 
 from types import SimpleNamespace
 
 import bpy
+import pytest
+from scenes import box
+
+
+@pytest.fixture
+def scene(fresh):
+    return box(fresh, samples=1)
+
+
+@pytest.fixture
+def addon(afterlight):
+    return afterlight.addon
 
 
 class Layout:

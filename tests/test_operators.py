@@ -6,20 +6,9 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from drawing import Layout, drawn
-from scenes import box
+from drawing import Layout, addon, drawn, scene  # noqa: F401  (fixtures among them)
 
 import extension
-
-
-@pytest.fixture
-def scene(fresh):
-    return box(fresh, samples=1)
-
-
-@pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
 
 
 # Operators

@@ -4,19 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from drawing import drawn, greyed, words
+from drawing import addon, drawn, greyed, scene, words  # noqa: F401  (fixtures among them)
 from light_fixtures import camera_for, light, random_frame  # noqa: F401
-from scenes import box, differences, nested_tree, put, render, simple_tree, written_down
-
-
-@pytest.fixture
-def scene(fresh):
-    return box(fresh, samples=1)
-
-
-@pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
+from scenes import differences, nested_tree, put, render, simple_tree, written_down
 
 
 # The panel

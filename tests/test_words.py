@@ -11,22 +11,11 @@ from urllib.parse import unquote, urlparse
 
 import bpy
 import pytest
-from drawing import drawn, words
-from scenes import box
+from drawing import addon, drawn, scene, words  # noqa: F401  (fixtures among them)
 
 import extension
 
 ADDON = extension.ROOT / "addon"
-
-
-@pytest.fixture
-def scene(fresh):
-    return box(fresh, samples=1)
-
-
-@pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
 
 
 # Help
