@@ -435,3 +435,17 @@ def test_a_muted_view_is_not_used(scene, views, seen, tmp_path):
     views.scenes(scene)[1].view_layers[0].use_pass_position = True
     render(scene, tmp_path / "lit.exr")
     assert scene.afterlight.report == "" and len(seen) == 1
+
+
+def test_the_picture_is_written_once_a_frame(scene, views, tmp_path, monkeypatch):
+    """The scout and the engine of the light read one file, of this very frame; nothing is left of it but what is kept."""
+    written, save = [], views.passes.save
+    monkeypatch.setattr(views.passes, "save", lambda lit: written.append(lit) or save(lit))
+    scene.afterlight.views, scene.afterlight.view_count, scene.afterlight.enabled = "AUTOMATIC", 1, True
+    for _ in range(2):
+        written.clear()
+        render(scene, tmp_path / "lit.exr")
+        assert written.count(scene) == 1 and scene.afterlight.report == ""
+    views.passes.save_early(scene)
+    views.passes.discard_early()
+    assert views.passes.save_once(scene) and written.count(scene) == 3

@@ -35,7 +35,6 @@ class Shot:
     again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
     camera: light.Camera = None
     settings: light.Settings = None
-    views: list = field(default_factory=list)  # [views.Saved]
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
@@ -44,7 +43,7 @@ class Shot:
         self.seconds[stage] = self.seconds.get(stage, 0.0) + seconds
 
 
-class AfterlightEngine(bpy.types.RenderEngine):
+class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
     bl_idname = ENGINE
     bl_label = "Afterlight (used by its helper scenes)"
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
@@ -108,14 +107,6 @@ class AfterlightEngine(bpy.types.RenderEngine):
         status.timed(shot.scene, shot.seconds)
         status.took(shot.scene, shot.memory)
 
-    def _fail(self, scene, text):
-        if status.fail(scene, text):
-            self.report({"ERROR"}, f"Afterlight: {text}")
-
-    def _warn(self, scene, text):
-        if status.warn(scene, text):
-            self.report({"WARNING"}, f"Afterlight: {text}")
-
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
@@ -148,7 +139,7 @@ class AfterlightEngine(bpy.types.RenderEngine):
             if self._progress("Saving passes", 0.0):
                 raise light.Cancelled
             relight.forget(shot.scene.session_uid)
-            self.file = passes.save(shot.scene)
+            self.file = passes.save_once(shot.scene)
             self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()

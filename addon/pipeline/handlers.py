@@ -39,6 +39,7 @@ def before_render(scene, *_):
         return
     status.begin(scene)
     views.reset()
+    passes.discard_early()
     views.begin(scene)
     if bpy.app.background and scene.library is None:
         wiring.connect(scene)
@@ -55,6 +56,7 @@ def before_render(scene, *_):
 def after_render(*_):
     """Complete or cancelled: undo _mute()."""
     views.reset()
+    passes.discard_early()
     while _muted:
         tree, node = _muted.pop()
         if tree in bpy.data.node_groups and node in bpy.data.node_groups[tree].nodes:

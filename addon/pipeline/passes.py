@@ -11,6 +11,8 @@ from .. import light
 from . import leftovers
 from .status import Problem
 
+_early = {}  # (frame, path) by the scene's session_uid
+
 # What the gather reads: light.Passes' field, the view layer's switch, the pass and its channels in the file.
 PASSES = (
     ("depth", "use_pass_z", "Depth", "Z"),
@@ -41,6 +43,25 @@ def save(scene):
     if not os.path.exists(path):
         raise _not_written("there is no file")
     return path
+
+
+def save_early(scene):
+    """As save(), for an engine that comes before the last that needs the file of this frame: see save_once()."""
+    path = save(scene)
+    _early[scene.session_uid] = scene.frame_current, path
+    return path
+
+
+def save_once(scene):
+    """As save(), where save_early() has not written this very frame already."""
+    frame, path = _early.pop(scene.session_uid, (None, ""))
+    return path if frame == scene.frame_current and os.path.exists(path) else save(scene)
+
+
+def discard_early(*_):
+    """A render begins or is over: what save_early() wrote for nobody goes."""
+    while _early:
+        discard(_early.popitem()[1][1])
 
 
 def file_path(scene):

@@ -13,10 +13,8 @@ class Picture:
 
     def __init__(self, scene, camera):
         layer = next(layer for layer in scene.view_layers if layer.use)
-        path = passes.file_path(scene)
         relight.forget(scene.session_uid)  # its file is written again
-        self._frame = passes.load(passes.save(scene), layer.name, passes.window(scene)[0])
-        passes.discard(path)
+        self._frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
         self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
 
     def receivers(self, rng):

@@ -14,7 +14,7 @@ from .picture import Picture
 from .status import Problem
 
 
-class AfterlightScout(bpy.types.RenderEngine):
+class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
     bl_idname = views.SCOUT_ENGINE
     bl_label = "Afterlight's views (used by its helper scenes)"
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
@@ -106,10 +106,6 @@ class AfterlightScout(bpy.types.RenderEngine):
         for view, pose in zip(views.scenes(scene), known.poses):
             views.pose(view, scene, pose, lens)
         return known.coverage
-
-    def _warn(self, scene, text):
-        if status.warn(scene, text):
-            self.report({"WARNING"}, f"Afterlight: {text}")
 
 
 def register():

@@ -30,6 +30,18 @@ class Problem(Exception):
         return text.format(*values)
 
 
+class Reporter:
+    """What our render engines have in common: they remember what they have to say, and report what is news."""
+
+    def _fail(self, scene, text):
+        if fail(scene, text):
+            self.report({"ERROR"}, f"Afterlight: {text}")
+
+    def _warn(self, scene, text):
+        if warn(scene, text):
+            self.report({"WARNING"}, f"Afterlight: {text}")
+
+
 def begin(scene):
     """Forget what the render before had to say."""
     _messages.pop(scene.session_uid, None)

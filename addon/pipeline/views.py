@@ -105,13 +105,13 @@ def mirror(scene):
         for source, target, names in ((scene, each, _SCENE), (scene.render, each.render, _RENDER),
                                       (layer, own, _LAYER)):
             for name in names:
-                _assign(target, name, getattr(source, name))
+                nodes.assign(target, name, getattr(source, name))
         for prop in scene.eevee.bl_rna.properties:
             if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
-                _assign(each.eevee, prop.identifier,
-                        _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier)))
-        _assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
-        _assign(each, "background_set", scene)
+                nodes.assign(each.eevee, prop.identifier,
+                             _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier)))
+        nodes.assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
+        nodes.assign(each, "background_set", scene)
 
 
 def faults(scene):
@@ -136,7 +136,7 @@ def reset(*_):
     _rendered = None
     for each in bpy.data.scenes:
         if each.get(MARK) in {"view", "scout"} and each.library is None:
-            _assign(each.view_layers[0], "use", each.get(MARK) == "scout")
+            nodes.assign(each.view_layers[0], "use", each.get(MARK) == "scout")
 
 
 def is_rendered(scene):
@@ -190,12 +190,12 @@ def pose(view, scene, matrix, lens):
               "shift_y": (full[1] / 2 - y - height / 2 - lens.centre[1]) / longer,
               "clip_start": lens.near, "clip_end": lens.far}
     for name, value in values.items():
-        _assign(data, name, value)
+        nodes.assign(data, name, value)
     for name, value in (("rotation_mode", "QUATERNION"), ("location", place), ("rotation_quaternion", rotation)):
-        _assign(camera, name, value)
-    _assign(view.render, "use_border", scene.render.use_border)
-    _assign(view.render, "use_crop_to_border", scene.render.use_crop_to_border)
-    _assign(view.view_layers[0], "use", True)
+        nodes.assign(camera, name, value)
+    nodes.assign(view.render, "use_border", scene.render.use_border)
+    nodes.assign(view.render, "use_crop_to_border", scene.render.use_crop_to_border)
+    nodes.assign(view.view_layers[0], "use", True)
 
 
 def placed(scene):
@@ -215,7 +215,7 @@ def keep_placed(scene, found):
 
 def drop(view):
     """Leave a view scene out of this frame."""
-    _assign(view.view_layers[0], "use", False)
+    nodes.assign(view.view_layers[0], "use", False)
 
 
 def posed(scene):
@@ -344,10 +344,3 @@ def _ensure_nodes(tree, ours):
     for index, each in enumerate(ours):
         node = nodes.view_node(tree, each)
         node.location = (-700, -400 - 50 * index)
-
-
-def _assign(data, name, value):
-    """Set only what differs: setting tags the file as edited, and Blender would call us again."""
-    old = getattr(data, name)
-    if (tuple(old) != tuple(value)) if hasattr(old, "__len__") and not isinstance(old, str) else old != value:
-        setattr(data, name, value)

@@ -54,7 +54,7 @@ def follow(scene):
         nodes.retarget(group, scene, helper, helper)
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
-        _assign(mirror, "use", layer.use and layer.name in lit)
+        nodes.assign(mirror, "use", layer.use and layer.name in lit)
         if layer.name in lit:
             _switch_passes_on(layer)
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
@@ -262,9 +262,3 @@ def _switch_passes_off(scene, layer):
     for _, switch, name, _ in PASSES:
         if switch in ours and name not in used:
             setattr(layer, switch, False)
-
-
-def _assign(data, name, value):
-    """Set only what differs: setting tags the file as edited, and Blender would call us again."""
-    if getattr(data, name) != value:
-        setattr(data, name, value)
