@@ -116,6 +116,9 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
             column.prop(settings, "draws")
             column.prop(settings, "bounces")
             column.prop(settings, "use_visibility")
+            row = column.row()
+            row.active = settings.use_visibility
+            row.prop(settings, "use_world_shadow")
         column = layout.column(align=True)
         column.active = not light.is_exact(light_settings(settings, 0))
         column.prop(settings, "seed")

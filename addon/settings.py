@@ -87,6 +87,11 @@ PARAMETERS = (
         "bright, and the gather takes about half the time",
         {"default": True}),
     Parameter(
+        "use_world_shadow", BoolProperty, "Shadow World",
+        "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of "
+        "one colour; needs Visibility, and costs nothing",
+        {"default": True}),
+    Parameter(
         "views", EnumProperty, "Views",
         "Which cameras see the surfaces that send light: what none of them sees sends none. Each further view costs the "
         "time of one sample of EEVEE",

@@ -122,3 +122,21 @@ def camera(scene, location, target, lens):
     data.lens, data.clip_start, data.clip_end = lens, 0.05, 100
     scene.camera = place("Camera", data, None, location, aim(location, target))
     return scene.camera
+
+
+def wall(name, material, start, end, height, openings=(), thick=0.1):
+    """An upright wall along x or y, `thick` in the middle between (x, y) `start` and `end`, with openings in it.
+
+    openings: (from, to, sill, lintel), the first two along the wall from `start`, the others above the floor."""
+    along = 0 if abs(end[0] - start[0]) > abs(end[1] - start[1]) else 1
+    across, side = start[1 - along], thick / 2
+    length = abs(end[along] - start[along])
+    edges = sorted({0, length, *(edge for opening in openings for edge in opening[:2])})
+    origin = min(start[along], end[along])
+    for low, high in zip(edges, edges[1:]):
+        gap = next((each for each in openings if each[0] <= low and high <= each[1]), None)
+        spans = [(0, height)] if gap is None else [(0, gap[2]), (gap[3], height)]
+        for bottom, top in spans:
+            if top > bottom:
+                first, second = (origin + low, across - side), (origin + high, across + side)
+                box(name, material, (*first[::1 - 2 * along], bottom), (*second[::1 - 2 * along], top))

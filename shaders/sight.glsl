@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sight: what the depth maps of all views know of a place, and of the way between two.
 
-#define MARGIN 0.02           // of the way, at both ends
+#define MARGIN 0.01           // of the way, at both ends
 #define FREE_TOLERANCE 1.0005 // of the farthest depth in a texel: so far behind it still counts as seen
+#define THICKNESS 0.03        // of the way: so thick is what no view looks behind
+#define BISECTIONS 4          // of a step in which a way goes behind something or comes out
+#define CONTINUOUS 0.25       // of the change in the gap over that step, that may be left after these
 
 // Planar depth of what the view shows there; 0 outside its frame and behind it.
 float depth_at(int view, vec3 projected)
@@ -12,35 +15,62 @@ float depth_at(int view, vec3 projected)
   return inside ? texelFetch(depths, texel + ivec2(0, view * size.y), 0).r : 0.0;
 }
 
-// Is the way blocked? A place blocks that lies behind the surfaces of some view and that no view sees free; and so do two
-// neighbouring places between which there is a thin wall. Places along the way are bits, and views are taken one after the
-// other: what a place's projection needs is linear along the way.
+// How far before the surface that a view shows there a place lies; below 0 behind it. projected: as projection_of() gives it.
+float gap_at(int view, vec4 projected)
+{
+  ivec2 texel = ivec2(floor(projected.xy / max(projected.w, NEAREST)));
+  texel = clamp(texel, ivec2(0), views.depths.xy - 1) + ivec2(0, view * views.depths.y);
+  return texelFetch(depths, texel, 0).g * FREE_TOLERANCE - projected.z;
+}
+
+// A way that is seen at one end of a step and hidden at the other: does it pass through the surface, or behind the edge of
+// something nearer? Then the gap jumps, and halving the step does not make the jump smaller.
+bool passes_through(int view, vec4 start, vec4 path, float low, float high)
+{
+  float gap_low = gap_at(view, start + path * low), gap_high = gap_at(view, start + path * high);
+  float whole = abs(gap_low - gap_high);
+  for (int k = 0; k < BISECTIONS; k++) {
+    float middle = 0.5 * (low + high), gap = gap_at(view, start + path * middle);
+    bool before = (gap > 0.0) == (gap_low > 0.0);
+    low = before ? middle : low;
+    gap_low = before ? gap : gap_low;
+    high = before ? high : middle;
+    gap_high = before ? gap_high : gap;
+  }
+  return abs(gap_low - gap_high) < CONTINUOUS * whole;
+}
+
+// Is the way blocked? It is where some view sees it pass through a surface, and where a place lies close behind one and no view
+// sees it free. What is farther behind is not known, and free. Places along the way are bits, and views are taken one
+// after the other: what a place's projection needs is linear along the way.
 bool is_blocked(vec3 from, vec3 to, float jitter)
 {
   int steps = views.draws.w;
-  uint is_free = 0u, is_behind = 0u, enters = 0u, leaves = 0u, is_open = 0u;
-  for (int view = 0; view < views.depths.w && steps > 0; view++) {
-    vec4 start = projection_of(view, from), path = projection_of(view, to) - start;
-    ivec2 origin = ivec2(0, view * views.depths.y);
-    uint seen = 0u, hidden = 0u;
-    for (int k = 0; k < steps; k++) {
-      vec4 place = start + path * ((float(k) + jitter) / float(steps));
-      ivec2 texel = ivec2(floor(place.xy / max(place.w, NEAREST)));
-      bool inside = place.z > NEAREST && is_inside(texel, views.depths.xy);
-      float depth = texelFetch(depths, origin + clamp(texel, ivec2(0), views.depths.xy - 1), 0).g * FREE_TOLERANCE;
-      seen |= uint(inside && place.z < depth) << k;
-      hidden |= uint(inside && place.z >= depth) << k;
-    }
-    is_free |= seen;
-    is_behind |= hidden;
-    enters |= seen & (hidden >> 1);
-    leaves |= hidden & (seen >> 1);
-    is_open |= seen & (seen >> 1);
-  }
-  // A wall too thin for any place to lie in it: one view sees the way go behind it, another sees it come out.
-  uint is_crossed = enters & leaves & ~is_open;
   // Surfaces do not hide themselves.
   int least = int(ceil(MARGIN * float(steps) - jitter)), most = int(floor((1.0 - MARGIN) * float(steps) - jitter));
   uint counted = (most >= 31 ? 0xFFFFFFFFu : (1u << (most + 1)) - 1u) & ~((1u << max(least, 0)) - 1u);
-  return (is_behind & ~is_free & counted) != 0u || (is_crossed & counted & (counted >> 1)) != 0u;
+  uint is_free = 0u, is_within = 0u;
+  float thickness = THICKNESS * distance(from, to), each = 1.0 / float(max(steps, 1));
+  for (int view = 0; view < views.depths.w && steps > 0; view++) {
+    vec4 start = projection_of(view, from), path = projection_of(view, to) - start;
+    uint seen = 0u, hidden = 0u;
+    for (int k = 0; k < steps; k++) {
+      vec4 place = start + path * ((float(k) + jitter) * each);
+      ivec2 texel = ivec2(floor(place.xy / max(place.w, NEAREST)));
+      bool shown = place.z > NEAREST && is_inside(texel, views.depths.xy);
+      float gap = gap_at(view, place);
+      seen |= uint(shown && gap > 0.0) << k;
+      hidden |= uint(shown && gap <= 0.0) << k;
+      is_within |= uint(shown && gap <= 0.0 && gap > -thickness) << k;
+    }
+    is_free |= seen;
+    uint turns = ((seen & (hidden >> 1)) | (hidden & (seen >> 1))) & counted & (counted >> 1);
+    for (; turns != 0u; turns &= turns - 1u) {
+      float low = (float(findLSB(turns)) + jitter) * each;
+      if (passes_through(view, start, path, low, low + each)) {
+        return true;
+      }
+    }
+  }
+  return (is_within & ~is_free & counted) != 0u;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Smooth: the noise of the draws out of the base's irradiance, by a mean over the texels around that lie on the same
-// surface.
+// surface. No noise may take away more of the world's light than there is.
 
 #define SMOOTH_RADIUS 2
 
@@ -32,5 +32,10 @@ void main()
       weights += weight;
     }
   }
-  imageStore(total_out, texel, sum / weights);
+  sum /= weights;
+  if (views.odds.z > 0.0) {
+    vec3 world = PI * world_light(to_world(0, normal)) / max(parameters.output_scale.x, 1.0);
+    sum.rgb = max(sum.rgb, -max(world, vec3(0.0)));
+  }
+  imageStore(total_out, texel, sum);
 }

@@ -65,6 +65,18 @@ float shown_area(int view, vec3 place, vec3 normal, float depth)
                              depth * depth * footprint * depth * inversesqrt(max(dot(eye, eye), 1e-37)) / cosine;
 }
 
+// EEVEE's world light on a white surface, as radiance: the first order of spherical harmonics, and unoccluded.
+vec3 world_light(vec3 normal)
+{
+  return views.world[0].rgb + normal.x * views.world[1].rgb + normal.y * views.world[2].rgb + normal.z * views.world[3].rgb;
+}
+
+// The radiance from that direction which makes this light: a cosine lobe damps the first order to 2/3.
+vec3 world_radiance(vec3 towards)
+{
+  return world_light(1.5 * towards);
+}
+
 // Number of a record, an emitter or a receiver, to where it lies in a texture.
 ivec2 record_texel(int number, int part, int parts)
 {

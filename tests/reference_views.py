@@ -14,8 +14,11 @@ from reference import (COSINE_FLOOR, FARTHEST, FLATNESS_SHARPNESS, NORMAL_POWER,
 from reference import radiance as radiance_of
 
 NEAREST = 1e-4
-MARGIN = 0.02
+MARGIN = 0.01
 FREE_TOLERANCE = 1.0005
+THICKNESS = 0.03
+BISECTIONS = 4
+CONTINUOUS = 0.25
 STEEPEST = 1.1
 DEPTH_TOLERANCE = 0.02
 SLOPE_TOLERANCE = 2.0
@@ -163,26 +166,46 @@ def receiver_of(grid, receivers):
     return (first + y[:, None] * wide + x).ravel()
 
 
+def gap_at(eye, places):
+    """(shown, gap): whether the view's frame holds a place, and how far before the surface there it lies; below 0 behind it."""
+    projected = project(eye, places)
+    farthest = depth_at(eye, projected, 1) * FREE_TOLERANCE
+    return farthest > 0, farthest - projected[..., 2]
+
+
+def passes_through(eye, start, path, low, high):
+    """(n,) bool: ways that are seen at one end of a step and hidden at the other go through a surface, and not behind the edge
+    of something nearer, where the gap jumps."""
+    gap_low, gap_high = (gap_at(eye, start + path * share[:, None])[1] for share in (low, high))
+    whole = np.abs(gap_low - gap_high)
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        gap = gap_at(eye, start + path * middle[:, None])[1]
+        before = (gap > 0) == (gap_low > 0)
+        low, gap_low = np.where(before, middle, low), np.where(before, gap, gap_low)
+        high, gap_high = np.where(before, high, middle), np.where(before, gap_high, gap)
+    return np.abs(gap_low - gap_high) < CONTINUOUS * whole
+
+
 def what_blocks(eyes, start, end, jitter, steps):
-    """(hidden, crossed), (n,) bool each. hidden: some place on the way lies behind a view's surfaces, and is seen free by none.
-    crossed: of two neighbouring places one view sees the first alone, another the second alone, and none both, so that between
-    them there is a wall. start, end: (n, 3)."""
+    """(passed, within), (n,) bool each. passed: some view sees the way pass through a surface. within: some place on it
+    lies close behind a view's surfaces, and is seen free by none. start, end: (n, 3)."""
     share = (np.arange(steps)[:, None] + np.broadcast_to(jitter, len(start))) / steps    # (steps, n)
-    places = start + (end - start) * share[..., None]
-    free, behind = np.zeros((2, *share.shape), bool)
-    goes_behind, comes_out, is_open = np.zeros((3, steps - 1, len(start)), bool)
-    for eye in eyes:
-        projected = project(eye, places)
-        farthest = depth_at(eye, projected, 1) * FREE_TOLERANCE
-        seen, hidden = (farthest > 0) & (projected[..., 2] < farthest), (farthest > 0) & (projected[..., 2] >= farthest)
-        free |= seen
-        behind |= hidden
-        goes_behind |= seen[:-1] & hidden[1:]
-        comes_out |= hidden[:-1] & seen[1:]
-        is_open |= seen[:-1] & seen[1:]
+    path = end - start
+    places = start + path * share[..., None]
+    thickness = THICKNESS * np.linalg.norm(path, axis=-1)
+    free, within = np.zeros((2, *share.shape), bool)
+    passed = np.zeros((steps - 1, len(start)), bool)
     counted = (share >= MARGIN) & (share <= 1 - MARGIN)
-    crossed = goes_behind & comes_out & ~is_open & counted[:-1] & counted[1:]
-    return (behind & ~free & counted).any(0), crossed.any(0)
+    both = counted[:-1] & counted[1:]
+    for eye in eyes:
+        shown, gap = gap_at(eye, places)
+        seen, hidden = shown & (gap > 0), shown & (gap <= 0)
+        free |= seen
+        within |= hidden & (gap > -thickness)
+        step, way = np.nonzero(((seen[:-1] & hidden[1:]) | (hidden[:-1] & seen[1:])) & both)
+        passed[step, way] |= passes_through(eye, start[way], path[way], share[step, way], share[step + 1, way])
+    return passed.any(0), (within & ~free & counted).any(0)
 
 
 def is_blocked(eyes, start, end, jitter, steps):
@@ -194,9 +217,19 @@ def power_of(sent):
     return np.abs(sent[:, :3]).sum(-1)
 
 
-def odds(sent, by_area):
-    """(x, y): an emitter is drawn with the chance (x * power + y) * area."""
-    area, power = sent[:, 3], power_of(sent)
+def world_light(world, normal):
+    """EEVEE's world light on a white surface: (4, 3) coefficients of 1, x, y, z."""
+    return world[0] + normal @ world[1:]
+
+
+def world_radiance(world, towards):
+    """The radiance from a direction which makes this light: a cosine lobe damps the first order to 2/3."""
+    return world_light(world, 1.5 * towards)
+
+
+def odds(sent, by_area, world=0.0):
+    """(x, y): an emitter is drawn with the chance (x * (power + world) + y) * area."""
+    area, power = sent[:, 3], power_of(sent) + world
     bright = (power * area).sum()
     by_area = by_area if bright > 0 else 1
     return ((1 - by_area) / bright if bright > 0 else 0), by_area / area.sum()
@@ -208,11 +241,16 @@ def chances(sent, by_area):
     return (power_odds * power_of(sent) + area_odds) * sent[:, 3]
 
 
-def all_pairs(places, normals, emitters, sent, share_free=1.0):
-    """(n, 3): the irradiance of receivers from every emitter. share_free: (n, emitters), or 1 where nothing hides."""
+def all_pairs(places, normals, emitters, sent, share_free=1.0, world=None):
+    """(n, 3): the irradiance of receivers from every emitter. share_free: (n, emitters), or 1 where nothing hides. world: (4, 3),
+    the light of which each emitter takes its part away."""
     form = form_factor(places[:, None], normals[:, None], emitters[:, 0, :3], emitters[:, 1, 3],
                        sent[:, 3:] * emitters[:, 1, :3])
-    return np.pi * (form * share_free) @ sent[:, :3]
+    lit = (form * share_free) @ sent[:, :3]
+    if world is not None:
+        towards = world_radiance(world, direction(emitters[:, 0, :3] - places[:, None]))
+        lit -= ((form * share_free)[..., None] * towards).sum(1)
+    return np.pi * lit
 
 
 def share_free(eyes, places, normals, emitters, steps, jitters=16):
@@ -226,8 +264,9 @@ def share_free(eyes, places, normals, emitters, steps, jitters=16):
     return free
 
 
-def smooth(level, irradiance):
-    """(H, W, 3): a mean over the texels around that lie on the same surface. level: reference.Level of the base."""
+def smooth(level, irradiance, world=None):
+    """(H, W, 3): a mean over the texels around that lie on the same surface. level: reference.Level of the base. world: (H, W, 3),
+    the light that there is of it: no more than that is taken away."""
     height, width = level.area.shape
     normal, surface = direction(level.vector_area), level.area > 0
     sum_, weights = irradiance.copy(), np.ones(level.area.shape)
@@ -242,4 +281,5 @@ def smooth(level, irradiance):
         weight = np.where(surface[here] & surface[there], near * flatness * likeness, 0)
         sum_[here] += weight[..., None] * irradiance[there]
         weights[here] += weight
-    return sum_ / weights[..., None]
+    mean = sum_ / weights[..., None]
+    return mean if world is None else np.maximum(mean, -np.pi * np.maximum(world, 0))

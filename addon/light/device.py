@@ -45,7 +45,7 @@ PARAMETERS = np.dtype([
     ("levels", np.int32, (MOST_LEVELS, 4)),   # x, y in the pyramid's texture; width, height
     ("regions", np.int32, (MOST_LEVELS, 4)),  # samples; first entry in the table; entries; entries / samples * 65536
     ("span", np.int32, 4),                # finest and coarsest level at hand
-    ("band", np.int32, 4),                # first work group of this dispatch; seed
+    ("band", np.int32, 4),                # first work group or row of this dispatch; seed; first column
     ("output_scale", np.float32, 4),      # strength
 ])
 PARAMETERS_GLSL = f"""
@@ -70,7 +70,8 @@ VIEWS = np.dtype([
     ("receivers", np.int32, (MOST_VIEWS, 4)),       # the same
     ("depths", np.int32, 4),                        # width, height of a view's depth map; pixels along a texel; views
     ("draws", np.int32, 4),                         # groups; candidates of each; entries of the table; steps of a way
-    ("odds", np.float32, 4),                        # chance of an emitter: x times power plus y, times its area
+    ("odds", np.float32, 4),                        # chance of an emitter: x (power + z) + y, times its area
+    ("world", np.float32, (4, 4)),                  # EEVEE's world light, as gather_views() has it
 ])
 VIEWS_GLSL = f"""
 struct Views {{
@@ -82,6 +83,7 @@ struct Views {{
   ivec4 depths;
   ivec4 draws;
   vec4 odds;
+  vec4 world[4];
 }};
 """
 
@@ -124,7 +126,7 @@ PASSES = {
                         ("receivers", "emitters", "radiance", "table", "depths"), "irradiance_out"),
     "draw_base": Pass(("camera", "surfel", "views", "sight", "random", "form", "receiver_base", "draw"),
                       ("surfels", "emitters", "radiance", "table", "depths"), "irradiance_out"),
-    "smooth": Pass(("camera", "surfel", "bilateral", "smooth"), ("surfels", "irradiance"), "total_out"),
+    "smooth": Pass(("camera", "surfel", "views", "bilateral", "smooth"), ("surfels", "irradiance"), "total_out"),
     "probe": Pass(("probe",), ("source",), "probed_out"),
     "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }

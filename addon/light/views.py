@@ -28,12 +28,15 @@ BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed o
 KINDS = "emitters", "receivers"
 
 
-def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, fraction: False,
-                 timings: dict[str, float] | None = None, broken: dict[str, int] | None = None) -> np.ndarray:
+def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = None, *,
+                 progress=lambda stage, fraction: False, timings: dict[str, float] | None = None,
+                 broken: dict[str, int] | None = None) -> np.ndarray:
     """The indirect light of the first view from the surfaces of all, after settings.bounces.
 
-    views: at most device.MOST_VIEWS, all of one resolution. Returns (H, W, 3) float32, bottom row first: the indirect
-    radiance to add to the picture, W sr^-1 m^-2; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as
+    views: at most device.MOST_VIEWS, all of one resolution. world: (4, 3), by how much EEVEE's world lights a white surface
+    with normal n, world[0] + n @ world[1:], W sr^-1 m^-2; what surfaces cover of it is taken away, which needs
+    settings.visibility. Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1
+    m^-2, below 0 where the world's light goes; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as
     gather_indirect() has them; broken speaks of the first view.
     """
     lap = stopwatch(timings)
@@ -45,6 +48,8 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
     passes = views[0].passes
     width, height = passes.size
     table = view_table(views, passes.size, settings)
+    if world is not None and settings.visibility:
+        table["world"][:, :3] = world
     settings = replace(settings, start=start_of(settings, passes.size))
     depths, emitters, receivers, channels = look(views, passes, table, report, broken)
     lap("views", receivers)
@@ -76,7 +81,7 @@ def gather_views(views: list[View], settings: Draws, *, progress=lambda stage, f
     report("upsample", 1.0)
     total = device.texture(across, up)
     device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": gathered, "total_out": total},
-                    device.groups(across, up))
+                    device.groups(across, up), table)
     indirect = composite(channels, base, total)
     lap("upsample", indirect)
     picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
@@ -162,30 +167,35 @@ def draw_table(sent, table, seed):
     """The table that emitters are drawn from, each as often as its share of all power and of all area; table["odds"] gets
     the factors that give those shares."""
     light = device.read(sent).reshape(-1, 4)[:count_of(table["emitters"])].astype(np.float64)
-    area = light[:, 3]
-    power = np.abs(light[:, :3]).sum(-1)
+    area, world = light[:, 3], np.abs(table["world"][0]).sum()
+    power = np.abs(light[:, :3]).sum(-1) + world
     whole, bright = area.sum(), (power * area).sum()
     by_area = BY_AREA if bright > 0 else 1.0
-    table["odds"][:2] = (1 - by_area) / bright if bright > 0 else 0.0, by_area / whole if whole > 0 else 0.0
+    table["odds"][:3] = (1 - by_area) / bright if bright > 0 else 0.0, by_area / whole if whole > 0 else 0.0, world
     chances = np.cumsum((table["odds"][0] * power + table["odds"][1]) * area)
     at = (np.arange(ENTRIES) + np.random.default_rng(seed & 0xFFFFFFFF).random(ENTRIES)) / ENTRIES * chances[-1]
     numbers = np.minimum(np.searchsorted(chances, at), len(chances) - 1).astype(np.float32)
     return device.texture(device.DRAWS_WIDTH, ENTRIES // device.DRAWS_WIDTH, "R32F", numbers)
 
 
-def draw(name, seed, table, target, textures, block=None, after_rows=lambda done: None):
-    """Gather into `target` by one of the passes "draw_...", some rows at a time."""
+def draw(name, seed, table, target, textures, block=None, after_band=lambda done: None):
+    """Gather into `target` by one of the passes "draw_...", some work groups at a time: whole rows of them, or a part of one
+    where a row alone would take too long."""
     block = device.parameters() if block is None else block.copy()
     block["band"][1] = device.as_int32(seed)
-    each = int(target.width * table["draws"][0] * table["draws"][1])  # candidates of a row
-    first = 0
-    while first < target.height:
-        rows = min(max(1, int(device.band(name)) // each // 8) * 8, target.height - first)
-        block["band"][0] = first
-        device.run_band(name, rows * each, block, textures | {"irradiance_out": target},
-                        device.groups(target.width, rows), table)
-        first += rows
-        after_rows(first / target.height)
+    across, up = device.groups(target.width, target.height)
+    each = int(np.prod(device.SQUARE) * np.prod(table["draws"][:2]))  # candidates of a work group
+    done = 0
+    while done < across * up:
+        row, column = divmod(done, across)
+        fitting = max(1, int(device.band(name)) // each)
+        wide, high = min(fitting, across - column), 1
+        if wide == across:
+            high = min(fitting // across, up - row)
+        block["band"][[0, 2]] = row * device.SQUARE[1], column * device.SQUARE[0]
+        device.run_band(name, wide * high * each, block, textures | {"irradiance_out": target}, (wide, high), table)
+        done += wide * high
+        after_band(done / (across * up))
 
 
 def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:

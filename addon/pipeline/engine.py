@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, passes, relight, status, turns, views, wiring
+from . import checks, passes, relight, status, turns, views, wiring, world
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -34,6 +34,7 @@ class Shot:
     window: tuple
     again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
     camera: light.Camera = None
+    world: np.ndarray = None         # its light, where surfaces are to take it from each other
     settings: light.Settings = None
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
@@ -80,6 +81,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             frame = again.frame if again else source.frame_current
             shot.settings = settings.light_settings(source.afterlight, frame)
             shot.camera = again.camera if again else self._look(depsgraph, source)
+            shot.world = world.light(depsgraph) if source.afterlight.use_world_shadow else None
 
     def render(self, depsgraph):
         """Gather, and hand back the pass. Whatever happens the pass is there, black if it must be."""
@@ -155,7 +157,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         options = {"progress": self._progress, "timings": timed, "broken": broken}
         with turns.until(self.test_break):
             if isinstance(shot.settings, light.Draws):
-                picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, **options)
+                picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, shot.world, **options)
             else:
                 picture = light.gather_indirect(frame, shot.camera, shot.settings, **options)
         for name, count in broken.items():

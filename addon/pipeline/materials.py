@@ -40,6 +40,20 @@ def sky(world):
     return value("Color", UNKNOWN) * value("Strength", 1.0)
 
 
+def plain_sky(world):
+    """(3,) radiance of a world of one colour; None where nodes decide it."""
+    output = world.node_tree.get_output_node("EEVEE") if world.node_tree else None
+    if not world.node_tree:
+        return tuple(world.color)
+    node = _linked(output.inputs["Surface"]) if output else None
+    if node is None:
+        return 0.0, 0.0, 0.0
+    if node.bl_idname != "ShaderNodeBackground" or any(socket.is_linked for socket in node.inputs):
+        return None
+    strength = node.inputs["Strength"].default_value
+    return tuple(strength * channel for channel in node.inputs["Color"].default_value[:3])
+
+
 def _shader(node, depth):
     """(albedo, emission, alpha)."""
     if node is None:

@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import nodes, views
+from . import nodes, views, world
 from .nodes import MARK
 from .passes import PASSES
 
@@ -49,6 +49,7 @@ def follow(scene):
     if helper is None:
         return  # deleted by hand: checks.py says so, with a button
     _mirror_layers(scene, helper)
+    world.mirror(scene, helper)
     views.follow(scene)
     for group in nodes.trees(scene.compositing_node_group):
         nodes.retarget(group, scene, helper, helper)

@@ -54,6 +54,12 @@ TEXTS = {
         "In jedem Einzelbild ein anderes Muster nehmen, damit das Rauschen bei bewegter Kamera nicht am Bild klebt. "
         "Kostet keine Zeit",
 
+    "Shadow World": "Welt abschatten",
+    "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of one "
+    "colour; needs Visibility, and costs nothing":
+        "Das Licht der Welt wegnehmen, wo Flächen davor stehen: EEVEE lässt es durch Wände scheinen. Für einfarbige Welten; "
+        "braucht Sichtbarkeit und kostet keine Zeit",
+
     # Panel and menu
     "Indirect Light Presets": "Voreinstellungen für indirektes Licht",
     "Sampling": "Abtastung",

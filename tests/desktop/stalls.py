@@ -2,11 +2,12 @@
 """The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a timer, and
 how long of it were calls of ours.
 
-    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [opengl] [vulkan] [WIDTHxHEIGHT ...]"""
+    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [opengl] [vulkan] [paper] [radiosity] [WIDTHxHEIGHT ...]"""
 
 import shutil
 import sys
 import time
+from itertools import product
 
 import extension
 import steps
@@ -18,17 +19,15 @@ WATCHED = {
     CALL: ("pipeline.turns", "_make"),
     "save passes": ("pipeline.passes", "save"),
     "load passes": ("pipeline.passes", "load"),
-    "upload": ("light.pipeline", "upload"),
-    "pack": ("light.pipeline", "pack"),
-    "merge": ("light.pipeline", "merge"),
-    "gather": ("light.pipeline", "gather"),
     "wait": ("light.device", "wait"),
     "compile": ("light.device", "shader"),
-    "upsample": ("light.pipeline", "upsample"),
-    "composite": ("light.pipeline", "composite"),
     "read back": ("light.device", "read"),
     "hand back": ("pipeline.engine", "AfterlightEngine", "_hand_back"),
 }
+OF_METHOD = {
+    "PAPER": {name: ("light.pipeline", name) for name in ("upload", "pack", "merge", "gather", "upsample", "composite")},
+    "RADIOSITY": {"place views": ("pipeline.scout", "AfterlightScout", "_place"), "save views": ("pipeline.views", "save")} | {
+        name: ("light.views", name) for name in ("look", "upload", "pack", "radiate", "draw_table", "draw", "composite")}}
 
 
 def stage_at(moment, spans, begin, end):
@@ -70,6 +69,7 @@ def stalls(window):
 
 def main():
     backends = [word for word in sys.argv[1:] if word in ("opengl", "vulkan")] or ["opengl", "vulkan"]
+    methods = [word.upper() for word in sys.argv[1:] if word.upper() in OF_METHOD] or list(OF_METHOD)
     sizes = [tuple(map(int, word.split("x"))) for word in sys.argv[1:] if word[0].isdigit()] or [(640, 360), (1280, 720)]
     for backend in backends:
         folder = ROOT / "build" / "stalls" / backend
@@ -79,12 +79,15 @@ def main():
             steps.install(window, extension.package())
             steps.new_box(window)
             steps.tick(window)
-            for name, path in WATCHED.items():
-                window.value(f"watch({name!r}, *{path!r})")
-            for width, height in sizes:
+            for watched in (WATCHED, *OF_METHOD.values()):
+                for name, path in watched.items():
+                    window.value(f"watch({name!r}, *{path!r})")
+            for method, (width, height) in product(methods, sizes):
+                window.run(steps.use, method)
                 window.run(steps.long_gather, width, height)
                 for run in ("first", "second"):
-                    print(f"\n{backend}, {width} x {height}, {run} render: longest stall, longest call of ours, seconds in all")
+                    print(f"\n{backend}, {method.title()}, {width} x {height}, {run} render: longest stall, longest call of ours, "
+                          "seconds in all")
                     for stage, seconds in stalls(window).items():
                         print(f"  {stage:20}", *(f"{each:8.3f}" for each in seconds), flush=True)
         finally:

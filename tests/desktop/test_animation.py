@@ -4,7 +4,7 @@
 import numpy as np
 import steps
 
-FRAMES = (1, 2, 3)
+FRAMES = range(1, 9)
 
 
 def animate(folder):
@@ -12,10 +12,10 @@ def animate(folder):
     import scenes
     scene = bpy.context.scene
     scenes.set_format(scene)
-    scene.frame_start, scene.frame_end = 1, 3
+    scene.frame_start, scene.frame_end = 1, 8
     scene.render.filepath = folder + "/window_"
     camera, settings = scene.camera, scene.afterlight
-    for frame, x, strength, samples in ((1, -0.4, 1, 16), (3, 0.4, 0.25, 256)):
+    for frame, x, strength, samples in ((1, -0.4, 1, 16), (8, 0.4, 0.25, 256)):
         camera.location.x, settings.strength, settings.samples = x, strength, samples
         camera.keyframe_insert("location", frame=frame)
         settings.keyframe_insert("strength", frame=frame)

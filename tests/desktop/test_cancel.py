@@ -45,6 +45,8 @@ def lit(window, afterlight):
 @pytest.mark.parametrize("method", ["PAPER", "RADIOSITY"])
 def test_in_ours(window, lit, method):
     window.run(steps.use, method)
+    if method == "RADIOSITY":
+        window.render()  # its views are placed
     window.run(steps.long_gather)
     window.value("remember()")
     steps.into_the_gather(window)

@@ -96,7 +96,8 @@ def test_untick(window, afterlight):
     assert window.value("changed()")
     window.render()
     steps.tick(window, on=False)
-    assert window.value("changed()") == []
+    # Blender fills in a colour space that a new file names none for, as soon as any format is chosen.
+    assert [line for line in window.value("changed()") if "linear_colorspace_settings/name: '' ->" not in line] == []
     window.render()
     assert np.mean(steps.result(window, "unticked")) > 0
 

@@ -7,5 +7,6 @@ settings.start = "QUARTER"
 settings.draws = 8
 settings.bounces = 3
 settings.use_visibility = True
+settings.use_world_shadow = True
 settings.views = "AUTOMATIC"
 settings.view_count = 4

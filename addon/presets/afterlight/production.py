@@ -7,5 +7,6 @@ settings.start = "HALF"
 settings.draws = 16
 settings.bounces = 4
 settings.use_visibility = True
+settings.use_world_shadow = True
 settings.views = "AUTOMATIC"
 settings.view_count = 7

@@ -7,5 +7,6 @@ settings.start = "FULL"
 settings.draws = 64
 settings.bounces = 8
 settings.use_visibility = True
+settings.use_world_shadow = True
 settings.views = "AUTOMATIC"
 settings.view_count = 9
