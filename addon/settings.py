@@ -75,7 +75,7 @@ PARAMETERS = (
         "draws", IntProperty, "Draws",
         "Emitters that a texel looks at, each chosen among sixteen. Time grows in proportion, noise falls with the square "
         "root",
-        {"default": 16, "min": 1, "max": 1024, "soft_min": 4, "soft_max": 256}),
+        {"default": 16, "min": 1, "max": light.MOST_GROUPS, "soft_min": 4}),
     Parameter(
         "bounces", IntProperty, "Bounces",
         "How often light is passed on from surface to surface. Rooms with bright walls want more. Each adds a little "

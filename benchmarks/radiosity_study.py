@@ -94,7 +94,7 @@ class Room:
         step = max(1, PAIRS // len(others))
         for first in range(0, len(place), step):
             here = np.s_[first:first + step]
-            form = views_64.form_factor(place[here, None], normal[here, None], others, area, facing, area)
+            form = views_64.form_factor(place[here, None], normal[here, None], others, area, area[:, None] * facing)
             lit, source = np.nonzero(form)
             form[lit, source] *= ~rooms.is_hidden(place[here][lit], others[source], self.solids)
             total[here] = np.pi * form @ sent
@@ -209,14 +209,14 @@ class Case:
 
 @contextmanager
 def changed(light, **constants):
-    """With other values of constants of addon/light/views.py, or of constants and uints of the shaders."""
+    """With other values of constants of addon/light/views.py, or of the shaders."""
     was = {name: getattr(light.views, name) for name in constants if hasattr(light.views, name)}
     folder = light.device.SHADERS
     with tempfile.TemporaryDirectory() as other:
         for file in folder.glob("*.glsl"):
             text = file.read_text()
             for name in constants.keys() - was.keys():
-                text = re.sub(rf"(#define {name} )\S+|(uint {name} = )[^;]+", rf"\g<1>\g<2>{constants[name]}", text)
+                text = re.sub(rf"(#define {name} )\S+", rf"\g<1>{constants[name]}", text)
             (Path(other) / file.name).write_text(text)
         try:
             for name in was:
@@ -289,11 +289,11 @@ def setup(cases):
 def causes(cases):
     many = dict(BOUNCE_GROUPS=64, BOUNCE_CANDIDATES=16)
     rows(cases, "what", [
-        ("the defaults", {}, {}), ("16 draws for one, bounces 4 for one", many, dict(groups=256)),
+        ("the defaults", {}, {}), ("8 draws for one, bounces 4 for one", many, dict(groups=128)),
         ("and at full resolution", many, dict(groups=64, start=1)),
         ("and no visibility", many, dict(groups=64, start=1, visibility=False)),
         ("defaults, no visibility", {}, dict(visibility=False)), ("defaults, one bounce of the four", {}, dict(bounces=1)),
-        ("defaults without the test for thin walls", {"is_crossed": "0u"}, {})])
+        ("defaults, no emitters drawn from nearby", {"NEAR_SHARE": 0}, {})])
 
 
 def draws(cases):
@@ -309,19 +309,19 @@ def bounce_draws(cases):
 
 def ways(cases):
     """What the depth maps take for blocked and for free, of ways between patches that face each other."""
-    print("\n| `STEPS` | `STEEPEST` | thin walls | " + " | ".join(
+    print("\n| `STEPS` | `THICKNESS` | `CONTINUOUS` | " + " | ".join(
         f"{case.room.name}: free ways blocked, hidden ways free" for case in cases) + " |\n" + "|---" * (len(cases) + 3) + "|")
-    usual = views_64.STEEPEST
-    for steps, steepest, walls in [(8, usual, True), (16, usual, True), (24, usual, True), (32, usual, True), (24, 1.0, True),
-                                   (24, 1.05, True), (24, 1.5, True), (24, usual, False)]:
-        views_64.STEEPEST = steepest
-        found = [misjudged(case, steps, walls) for case in cases]
-        print(f"| {steps} | {steepest} | {'yes' if walls else 'no'} | " + " | ".join(
+    usual = views_64.THICKNESS, views_64.CONTINUOUS
+    for steps, *values in [(8, *usual), (16, *usual), (24, *usual), (32, *usual), (24, 0.0, usual[1]), (24, 0.1, usual[1]),
+                           (24, 1.0, usual[1]), (24, usual[0], 0.0), (24, usual[0], 0.125), (24, usual[0], 0.5)]:
+        views_64.THICKNESS, views_64.CONTINUOUS = values
+        found = [misjudged(case, steps) for case in cases]
+        print(f"| {steps} | {values[0]} | {values[1]} | " + " | ".join(
             f"{blocked:.1%}, {free:.1%}" for blocked, free in found) + " |", flush=True)
-    views_64.STEEPEST = usual
+    views_64.THICKNESS, views_64.CONTINUOUS = usual
 
 
-def misjudged(case, steps, walls, count=20_000):
+def misjudged(case, steps, count=20_000):
     """(share of the free ways taken for blocked, share of the hidden ones taken for free)"""
     rng = np.random.default_rng(1)
     place, normal, area = case.room.patches(case.room.patch / 4)
@@ -330,9 +330,8 @@ def misjudged(case, steps, walls, count=20_000):
     facing = ((path * normal[start]).sum(-1) > 1e-6) & ((path * normal[end]).sum(-1) < -1e-6)
     start, end = place[start[facing]], place[end[facing]]
     origin = case.views[0].camera.position
-    hidden, crossed = views_64.what_blocks(views_64.eyes_of(case.views, 1), start - origin, end - origin, rng.random(len(start)),
-                                           steps)
-    blocked, true = hidden | crossed if walls else hidden, rooms.is_hidden(start, end, case.room.solids)
+    blocked = views_64.is_blocked(views_64.eyes_of(case.views, 1), start - origin, end - origin, rng.random(len(start)), steps)
+    true = rooms.is_hidden(start, end, case.room.solids)
     return blocked[~true].mean(), 1 - blocked[true].mean()
 
 
@@ -340,7 +339,9 @@ TABLES = {
     "causes": causes, "draws": draws, "bounce_draws": bounce_draws, "steps": constant("STEPS", (8, 16, 24, 32)),
     "by_area": constant("BY_AREA", (0.1, 0.25, 0.5, 0.75, 1.0)), "emitter": constant("EMITTER", (1, 2, 4, 8)),
     "receiver": constant("RECEIVER", (4, 8, 16, 32)), "smooth": constant("SMOOTH_RADIUS", (0, 1, 2, 3, 4)),
-    "depths": constant("DEPTHS_ACROSS", (80, 160, 320)), "margin": constant("MARGIN", (0.0, 0.02, 0.05)),
+    "depths": constant("DEPTHS_ACROSS", (80, 160, 320)), "margin": constant("MARGIN", (0.0, 0.01, 0.02, 0.05)),
+    "thickness": constant("THICKNESS", (0.0, 0.01, 0.03, 0.1, 1.0)), "continuous": constant("CONTINUOUS", (0.1, 0.25, 0.5, 1.0)),
+    "near": constant("NEAR_SHARE", (0, 2, 4, 8)),
     "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
     "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "setup": setup,
     "seeds": seeds, "costs": costs}

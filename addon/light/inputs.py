@@ -8,6 +8,9 @@ import numpy as np
 
 from .region import LARGEST_RADIUS
 
+# Draws of a texel. Mesa's software driver ends the loops of a shader, without a word, after 65,535 rounds in all: those along
+# the ways to this many emitters, in ten views, and over 16 candidates each, stay within it.
+MOST_GROUPS = 128
 FARTHEST = 1e9             # metres; EEVEE writes 1e10 where there is no surface
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -90,7 +93,7 @@ class Draws:
     """Settings of the light between several views.
 
     start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: draws of a base texel whose way is
-    looked along; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and more. visibility:
+    looked along, at most MOST_GROUPS; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and more. visibility:
     whether surfaces hide what lies behind them. seed, strength: as in Settings. Raises ValueError for anything else."""
 
     start: int
@@ -106,6 +109,8 @@ class Draws:
         if min(self.groups, self.candidates, self.bounces) < 1:
             raise ValueError(f"Groups, candidates and bounces are 1 or more, not {self.groups}, {self.candidates}, "
                              f"{self.bounces}")
+        if self.groups > MOST_GROUPS:
+            raise ValueError(f"Groups are at most {MOST_GROUPS}, not {self.groups}")
 
 
 @dataclass(frozen=True)

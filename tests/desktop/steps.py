@@ -55,7 +55,7 @@ def long_gather(width=640, height=360):
     scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.eevee.taa_render_samples = 1
     scene.afterlight.start, scene.afterlight.samples, scene.afterlight.radius = "FULL", 1024, 32
-    scene.afterlight.draws = 256
+    scene.afterlight.draws = 128
 
 
 def into_the_gather(window):
