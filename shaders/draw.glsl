@@ -27,15 +27,6 @@ ivec2 place_in_grid(int view, vec3 place)
   return projected.z > NEAREST ? ivec2(floor(clamp(projected.xy * blocks, -1e6, 1e6))) : ivec2(-1000000);
 }
 
-int view_of(int number)
-{
-  int view = views.depths.w - 1;
-  while (view > 0 && number < views.emitters[view].x) {
-    view--;
-  }
-  return view;
-}
-
 // Chance of each of the 8 k emitters on the square ring k.
 float ring_chance(int k)
 {

@@ -5,10 +5,7 @@
 void main()
 {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  int number = at.y * RECORDS_WIDTH + at.x, view = views.depths.w - 1;
-  while (view > 0 && number < views.emitters[view].x) {
-    view--;
-  }
+  int number = at.y * RECORDS_WIDTH + at.x, view = view_of(number);
   ivec4 grid = views.emitters[view], receivers = views.receivers[view];
   int within = number - grid.x;
   if (at.x >= RECORDS_WIDTH || within >= grid.y * grid.z) {

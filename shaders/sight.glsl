@@ -15,10 +15,16 @@ float depth_at(int view, vec3 projected)
   return inside ? texelFetch(depths, texel + ivec2(0, view * size.y), 0).r : 0.0;
 }
 
-// How far before the surface that a view shows there a place lies; below 0 behind it. projected: as projection_of() gives it.
+// Texel of the depth map. projected: as projection_of() gives it.
+ivec2 texel_of(vec4 projected)
+{
+  return ivec2(floor(projected.xy / max(projected.w, NEAREST)));
+}
+
+// How far before the surface that a view shows there a place lies; below 0 behind it.
 float gap_at(int view, vec4 projected)
 {
-  ivec2 texel = ivec2(floor(projected.xy / max(projected.w, NEAREST)));
+  ivec2 texel = texel_of(projected);
   texel = clamp(texel, ivec2(0), views.depths.xy - 1) + ivec2(0, view * views.depths.y);
   return texelFetch(depths, texel, 0).g * FREE_TOLERANCE - projected.z;
 }
@@ -56,8 +62,7 @@ bool is_blocked(vec3 from, vec3 to, float jitter)
     uint seen = 0u, hidden = 0u;
     for (int k = 0; k < steps; k++) {
       vec4 place = start + path * ((float(k) + jitter) * each);
-      ivec2 texel = ivec2(floor(place.xy / max(place.w, NEAREST)));
-      bool shown = place.z > NEAREST && is_inside(texel, views.depths.xy);
+      bool shown = place.z > NEAREST && is_inside(texel_of(place), views.depths.xy);
       float gap = gap_at(view, place);
       seen |= uint(shown && gap > 0.0) << k;
       hidden |= uint(shown && gap <= 0.0) << k;

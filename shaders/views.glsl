@@ -82,3 +82,13 @@ ivec2 record_texel(int number, int part, int parts)
 {
   return ivec2((number % RECORDS_WIDTH) * parts + part, number / RECORDS_WIDTH);
 }
+
+// The view that an emitter is of.
+int view_of(int number)
+{
+  int view = views.depths.w - 1;
+  while (view > 0 && number < views.emitters[view].x) {
+    view--;
+  }
+  return view;
+}

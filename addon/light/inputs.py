@@ -93,8 +93,9 @@ class Draws:
     """Settings of the light between several views.
 
     start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: draws of a base texel whose way is
-    looked along, at most MOST_GROUPS; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and more. visibility:
-    whether surfaces hide what lies behind them. seed, strength: as in Settings. Raises ValueError for anything else."""
+    looked along, at most MOST_GROUPS; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and
+    more. visibility: whether surfaces hide what lies behind them. seed, strength: as in Settings. Raises ValueError for
+    anything else."""
 
     start: int
     groups: int = 16

@@ -32,8 +32,7 @@ def look(material):
 
 def sky(world):
     """Mean radiance of a world, roughly."""
-    output = world.node_tree.get_output_node("EEVEE") if world and world.node_tree else None
-    node = _linked(output.inputs["Surface"]) if output else None
+    node = _shines(world) if world else None
     if node is None:
         return sum(world.color) / 3 if world and not world.node_tree else 0.0
     value = _values(node)
@@ -42,16 +41,21 @@ def sky(world):
 
 def plain_sky(world):
     """(3,) radiance of a world of one colour; None where nodes decide it."""
-    output = world.node_tree.get_output_node("EEVEE") if world.node_tree else None
     if not world.node_tree:
         return tuple(world.color)
-    node = _linked(output.inputs["Surface"]) if output else None
+    node = _shines(world)
     if node is None:
         return 0.0, 0.0, 0.0
     if node.bl_idname != "ShaderNodeBackground" or any(socket.is_linked for socket in node.inputs):
         return None
     strength = node.inputs["Strength"].default_value
     return tuple(strength * channel for channel in node.inputs["Color"].default_value[:3])
+
+
+def _shines(world):
+    """The node that decides what a world sends, or None."""
+    output = world.node_tree.get_output_node("EEVEE") if world.node_tree else None
+    return _linked(output.inputs["Surface"]) if output else None
 
 
 def _shader(node, depth):

@@ -4,15 +4,14 @@ before them."""
 
 import numpy as np
 
-from . import materials
+from . import materials, nodes
 
 
 def mirror(scene, helper):
     """Let `helper`'s depsgraph hold what shines on `scene`, so that it can be looked at as it is in a frame."""
-    from .nodes import assign
-    assign(helper, "world", scene.world)
+    nodes.assign(helper, "world", scene.world)
     for layer, own in zip(scene.view_layers, helper.view_layers):
-        assign(own, "world_override", layer.world_override)
+        nodes.assign(own, "world_override", layer.world_override)
 
 
 def light(depsgraph):
