@@ -50,13 +50,14 @@ def markdown(found, folder, study=None):
         f"at {size}, with {found['samples']} EEVEE samples and {found['bounces']} diffuse bounces in the reference, on "
         f"{found['machine']}. Numbers: [accuracy.json]({folder}/accuracy.json).",
         "*Indirect light* is bounced diffuse light, albedo included; light that meshes send directly belongs to it, as "
-        "EEVEE has none of it as direct light. Afterlight's is what it added to the picture. *Energy* is the mean over "
+        "EEVEE has none of it as direct light, and so does the direct light of the world, of which EEVEE has too much. "
+        "Afterlight's is what it added to the picture, and the world's light in EEVEE's. *Energy* is the mean over "
         "the reference's, *relative L1* the mean difference over the reference's mean, *relMSE* the mean of squared "
         f"difference over squared reference + {metrics.EPSILON} (both over the reference's mean), *99.9 %* the ratio of "
         "those percentiles, *HDR-FLIP* the error that an eye sees, *cost* the frame's seconds over plain EEVEE's beside "
         "it. Only surfaces count, no background.",
         f"The reference is Cycles in two independent halves, whose difference is its noise. A number under "
-        f"{found['clearly']} times the noise is refused."]
+        f"{found['clearly']} times the noise is refused; what stands with a < is what the true error is at most."]
     if measured(found):
         parts += [f"![Error against cost]({folder}/{PLOT})", *means(found)]
     for scene in found["scenes"]:
@@ -73,11 +74,18 @@ def means(found):
     averaged = []
     for name in names:
         rows = [row for one in tables for row in one["rows"] if row["name"] == name]
-        averaged.append({"name": name} | {
-            picture: {key: average([row.get(picture, {}).get(key) for row in rows]) for key in metrics.NAMES}
-            for picture in PICTURES} | {"cost": average([row.get("cost") for row in rows])})
+        averaged.append({"name": name} | {picture: mean_of([row.get(picture, {}) for row in rows]) for picture in PICTURES}
+                        | {"cost": average([row.get("cost") for row in rows])})
     return ["## Mean over the scenes", f"Diffuse surfaces of {len(tables)} scenes; a dash where a scene has no number.",
             *picture_tables(averaged)]
+
+
+def mean_of(scenes):
+    """Of the numbers of several scenes; the mean of bounds is a bound."""
+    found = {key: average([each.get(key) for each in scenes]) for key in metrics.NAMES}
+    if any("at_most" in each for each in scenes):
+        found["at_most"] = average([each.get("at_most", each.get("l1")) for each in scenes])
+    return found
 
 
 def average(values):
@@ -92,8 +100,9 @@ def scene_parts(scene, found, folder):
         what = "Diffuse surfaces" if one["surface"] == "diffuse" else (
             f"Surfaces that are not diffuse (gloss and glass are over {found['not_diffuse']:.0%} of their colour)")
         noise = ", ".join(f"{PICTURES[name].lower()} {number(value, 4)}" for name, value in one["noise"].items())
+        world = f" The world's direct light is {one['world']:.0%} of the indirect light." if one.get("world", 0) > 0.001 else ""
         parts += [f"{what}, {one['share']:.1%} of the frame. The reference has "
-                  f"{scene['samples'][str(found['bounces'])]} samples; its noise, as relative L1: {noise}.",
+                  f"{scene['samples'][str(found['bounces'])]} samples; its noise, as relative L1: {noise}.{world}",
                   *picture_tables(one["rows"])]
     return parts + cause_parts(scene.get("causes"))
 
@@ -108,8 +117,11 @@ def cells(row, picture):
     found = row.get(picture, {})
     if "failed" in row:
         return [row["name"], f"failed: {row['failed']}", *[""] * len(metrics.NAMES)]
-    numbers = ["refused"] * len(metrics.NAMES) if "refused" in found else [number(found.get(key)) for key in metrics.NAMES]
-    return [row["name"], *numbers, number(row.get("cost"), 2)]
+    missing = "refused" if "refused" in found else number(None)
+    numbers = {key: missing if found.get(key) is None else number(found[key]) for key in metrics.NAMES}
+    if "at_most" in found:
+        numbers["l1"] = f"< {number(found['at_most'])}"
+    return [row["name"], *numbers.values(), number(row.get("cost"), 2)]
 
 
 def cause_parts(causes):

@@ -32,11 +32,12 @@ class Unmeasurable(Exception):
 
 @dataclass
 class Plain:
-    """What EEVEE alone renders. diffuse: direct diffuse light, albedo included. passes, camera: light.Passes and
-    light.Camera of it."""
+    """What EEVEE alone renders. diffuse: direct diffuse light, albedo included. world: what of it the world sends. passes,
+    camera: light.Passes and light.Camera of it."""
 
     final: np.ndarray
     diffuse: np.ndarray
+    world: np.ndarray
     passes: object
     camera: object
 
@@ -44,9 +45,9 @@ class Plain:
 @dataclass
 class Candidate:
     """One way to render the scene. group: the curve of the plot that it belongs to. mode(scene): a context in which the
-    scene is rendered so. bounced(scene, final, plain): the indirect light of the frame just rendered.
+    scene is rendered so. bounced(scene, final, plain): `indirect` of the frame just rendered.
 
-    final: what Blender writes. indirect: the bounced diffuse light in it. seconds: of each timed frame. failure: why
+    final: what Blender writes. indirect: the diffuse light in it that no lamp sent directly. seconds: of each timed frame. failure: why
     there are none. bounces: for references of their own, whose noise counts too.
     """
 
@@ -118,9 +119,9 @@ def all_of(afterlight, bounces, presets=()):
     folder = Path(afterlight.__file__).parent / "addon" / "presets" / "afterlight"
     named = sorted(path.stem for path in folder.glob("*.py"))
     return [
-        Candidate("EEVEE", "EEVEE", nullcontext, lambda scene, final, plain: np.zeros_like(final)),
-        Candidate("EEVEE ray tracing, default", "EEVEE ray tracing", lambda scene: traced(scene, {}), added_diffuse),
-        Candidate("EEVEE ray tracing, best", "EEVEE ray tracing", lambda scene: traced(scene, BEST), added_diffuse),
+        Candidate("EEVEE", "EEVEE", nullcontext, lambda scene, final, plain: plain.world),
+        Candidate("EEVEE ray tracing, default", "EEVEE ray tracing", lambda scene: traced(scene, {}), traced_diffuse),
+        Candidate("EEVEE ray tracing, best", "EEVEE ray tracing", lambda scene: traced(scene, BEST), traced_diffuse),
         *(ticked(afterlight, name) for name in presets or named),
         *(short(bounces, samples) for samples in CYCLES_SAMPLES)]
 
@@ -152,9 +153,9 @@ def tracing_settings(eevee):
                   if prop.type != "POINTER"]
 
 
-def added_diffuse(scene, final, plain):
+def traced_diffuse(scene, final, plain):
     """EEVEE's bounce lies in its direct diffuse light (docs/blender.md)."""
-    return diffuse(scene) - plain.diffuse
+    return diffuse(scene) - plain.diffuse + plain.world
 
 
 def diffuse(scene):
@@ -173,16 +174,18 @@ def ticked(afterlight, preset):
             yield
         finally:
             scene.afterlight.enabled = False
-    return Candidate(f"Afterlight, {preset.title()}", "Afterlight", mode, lambda scene, final, plain: final - plain.final)
+    return Candidate(f"Afterlight, {preset.title()}", "Afterlight", mode,
+                     lambda scene, final, plain: final - plain.final + plain.world)
 
 
 def short(bounces, samples):
     """Cycles with few samples."""
     def bounced(scene, final, plain):
-        found, meshes = references.read(scene)["indirect"], 0
-        if references.emissive(scene):
-            meshes = references.render(scene, references.MESHES, samples, SEED)["direct"]
-        return found + meshes
+        found = references.read(scene)["indirect"]
+        for alone, shines in ((references.MESHES, references.emissive), (references.WORLD, references.world_shines)):
+            if shines(scene):
+                found = found + references.render(scene, alone, samples, SEED)["direct"]
+        return found
     return Candidate(f"Cycles, {samples} sample{'s' * (samples > 1)}", "Cycles",
                      lambda scene: references.as_cycles(scene, bounces, samples, SEED), bounced)
 
@@ -231,4 +234,21 @@ def look(scene, final, afterlight):
     finally:
         passes.discard(path)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return Plain(final, diffuse(scene), found, passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene))
+    camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+    return Plain(final, diffuse(scene), world_light(scene), found, camera)
+
+
+def world_light(scene):
+    """(H, W, 3): what diffuse surfaces send on of the world's light, as EEVEE has it. A render, where the world shines."""
+    import bpy
+    if not references.world_shines(scene):
+        return np.zeros((scene.render.resolution_y, scene.render.resolution_x, 3), np.float32)
+    lamps = [thing for thing in references.shown(scene) if thing.type == "LIGHT" and not thing.hide_render]
+    try:
+        for lamp in lamps:
+            lamp.hide_render = True
+        bpy.ops.render.render(scene=scene.name)
+        return diffuse(scene)
+    finally:
+        for lamp in lamps:
+            lamp.hide_render = False

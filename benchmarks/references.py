@@ -6,7 +6,10 @@
 Light that meshes send directly is counted as bounced light: EEVEE has none of it as direct light. So the render without
 diffuse bounces, the direct light of lamps and world, has emissive meshes hidden from diffuse surfaces; and where there
 are any, a render of the meshes' light alone is added to the indirect light of the others. (The difference of Diffuse
-Direct with and without them is the same light, with the noise of both.) Pictures are (H, W, 3) float32, rows top first.
+Direct with and without them is the same light, with the noise of both.)
+
+The direct light of the world is counted too, on both sides: EEVEE lets it through walls, and Afterlight takes out what walls
+cover, so only the sum of both says how good that is. Pictures are (H, W, 3) float32, rows top first.
 """
 
 import hashlib
@@ -27,7 +30,7 @@ PASSES = {"diffuse_color": "Diffuse Color", "diffuse_direct": "Diffuse Direct", 
           "glossy_color": "Glossy Color", "transmission_color": "Transmission Color"}
 KEPT = ("final", "direct", "indirect", "albedo", "other_albedo")  # products, since only those may be averaged
 NOT_DIFFUSE = 0.2            # share of gloss and transmission in a pixel's colour that makes it so
-MESHES = -1                  # in place of a number of bounces: the direct light of meshes, without lamps and world
+MESHES, WORLD = -1, -2       # in place of a number of bounces: the direct light of meshes alone, and of the world alone
 SHINES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES", "POINTCLOUD"}
 # Nothing that trades truth for calm. The file decides the bounces of gloss and glass, which are not what we add.
 SETTINGS = {
@@ -103,24 +106,31 @@ class Reference:
 
 
 class Truth:
-    """All references of one scene: {0, 1, N: Reference}, and MESHES where meshes shine."""
+    """All references of one scene: {0, 1, N: Reference}, MESHES where meshes shine, WORLD where the world does."""
 
     def __init__(self, scene, bounces, source, folder=CACHE):
-        self.of = {number: Reference(scene, number, source, folder)
-                   for number in sorted({0, 1, bounces} | ({MESHES} if emissive(scene) else set()))}
+        self.alone = {number for number, shines in ((MESHES, emissive), (WORLD, world_shines)) if shines(scene)}
+        self.of = {number: Reference(scene, number, source, folder) for number in sorted({0, 1, bounces} | self.alone)}
         self.longest = bounces
 
     def extend(self, bounces, samples):
-        """More samples for one number of bounces, and for the meshes' light, which is part of it."""
-        for number in {bounces, MESHES} & self.of.keys():
+        """More samples for one number of bounces, and for the light of meshes and of the world, which is part of it."""
+        for number in {bounces} | self.alone:
             self.of[number].extend(samples)
 
-    def indirect(self, bounces, index=None):
-        """(H, W, 3) indirect radiance, the light of meshes included; of both halves, or of one."""
+    def bounced(self, bounces, index=None):
+        """(H, W, 3) radiance that comes from surfaces, the light of meshes included; of both halves, or of one."""
         parts = [] if bounces == 0 else [(bounces, "indirect")] + [(MESHES, "direct")] * (MESHES in self.of)
+        return self._sum(parts, index)
+
+    def indirect(self, bounces, index=None):
+        """(H, W, 3) radiance that comes from anything but lamps: bounced() and the world's; of both halves, or of one."""
+        return self.bounced(bounces, index) + self._sum([(WORLD, "direct")] * (WORLD in self.of), index)
+
+    def _sum(self, parts, index):
         halves = (0, 1) if index is None else (index,)
         arrays = [self.of[number].halves[half][name] for number, name in parts for half in halves]
-        return sum(arrays, np.zeros_like(self.final(bounces))) / len(halves)
+        return sum(arrays, np.zeros_like(self.final(self.longest))) / len(halves)
 
     def final(self, bounces, index=None):
         """(H, W, 3), what Cycles shows."""
@@ -180,7 +190,7 @@ def read(scene):
 
 @contextmanager
 def as_cycles(scene, bounces, samples, seed=0):
-    """The scene set up for Cycles; without diffuse bounces its emissive meshes light nothing diffuse."""
+    """The scene set up for Cycles; without diffuse bounces, and for the world alone, its emissive meshes light nothing diffuse."""
     wanted = SETTINGS | {"samples": samples, "diffuse_bounces": max(bounces, 0), "seed": seed,
                          "filter_width": scene.render.filter_size}
     changes = [(scene.cycles, name, value) for name, value in wanted.items()]
@@ -188,10 +198,12 @@ def as_cycles(scene, bounces, samples, seed=0):
     lamps = [thing for thing in shown(scene) if thing.type == "LIGHT"]
     changes += [(lamp, "visible_camera", False) for lamp in lamps]  # EEVEE shows none
     changes += [(light.cycles, "use_multiple_importance_sampling", False) for light in shadowless(scene)]
-    if bounces == 0:
+    if bounces in (0, WORLD):
         changes += [(mesh, "visible_diffuse", False) for mesh in emissive(scene)]
+    if bounces in (MESHES, WORLD):
+        changes += [(lamp, "hide_render", True) for lamp in lamps]
     if bounces == MESHES:
-        changes += [(lamp, "hide_render", True) for lamp in lamps] + [(scene, "world", None)]
+        changes += [(scene, "world", None), (layer(scene), "world_override", None)]
     changes += [(scene.render, "engine", "CYCLES")]
     before = [(thing, name, getattr(thing, name)) for thing, name, _ in changes]
     try:
@@ -249,8 +261,14 @@ def emissive(scene):
             and any(slot.material and sends_light(slot.material.node_tree) for slot in thing.material_slots)]
 
 
+def world_shines(scene):
+    """Does anything but blackness surround the scene?"""
+    world = layer(scene).world_override or scene.world
+    return world is not None and sends_light(world.node_tree)
+
+
 def sends_light(tree):
-    """Does a material's node tree hold, at any depth, a node that emits?"""
+    """Does the node tree of a material or a world hold, at any depth, a node that emits?"""
     return any(_sends(node) for node in nodes_of(tree))
 
 
@@ -265,8 +283,8 @@ def nodes_of(tree):
 
 
 def _sends(node):
-    if node.type not in {"EMISSION", "BSDF_PRINCIPLED"}:
+    if node.type not in {"EMISSION", "BACKGROUND", "BSDF_PRINCIPLED"}:
         return False
-    color, strength = (node.inputs[name] for name in
-                       (("Color", "Strength") if node.type == "EMISSION" else ("Emission Color", "Emission Strength")))
+    color, strength = (node.inputs[name] for name in (
+        ("Emission Color", "Emission Strength") if node.type == "BSDF_PRINCIPLED" else ("Color", "Strength")))
     return (strength.is_linked or strength.default_value > 0) and (color.is_linked or any(color.default_value[:3]))

@@ -335,6 +335,8 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
     assert scene.afterlight.report == "" and not status.warnings(scene)
     shares, _ = status.coverage(scene)
     assert shares[0] < 0.5 and shares[-1] > 0.95 and len(shares) == len(seen) + 1
+    stages = status.stages(scene)
+    assert list(stages)[:3] == ["place views", "EEVEE, views", "write passes"] and stages["EEVEE, views"] > stages["hand back"]
     for passes, camera, place in seen:
         hit = passes.depth < 1e9
         found = positions(passes, camera)[hit]
@@ -356,7 +358,12 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
 
     seen.clear()  # lit again: the kept views are used, and EEVEE does not render them
     assert bpy.ops.afterlight.update() == {"FINISHED"}
-    assert len(seen) == used
+    assert len(seen) == used and not status.warnings(scene) and "EEVEE, views" not in status.stages(scene)
+    scene.afterlight.view_count += 1  # that many were not asked for when it was rendered
+    assert bpy.ops.afterlight.update() == {"FINISHED"}
+    said, = status.warnings(scene)
+    assert "Press F12" in said and scene.afterlight.report == ""
+    scene.afterlight.view_count -= 1
 
     for view in views.scenes(scene)[1:used]:  # far from where they should be
         view.camera.location = (100, 0, 0)

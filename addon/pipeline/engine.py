@@ -112,7 +112,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
-            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views)
+            scene = self.shot.scene
+            relight.keep(scene, self.file, self.shot.camera, self.views, views.wanted(scene))
         elif self.file:
             for path in (self.file, *(view.path for view in self.views)):
                 passes.discard(path)
@@ -136,6 +137,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             helper.camera = own
 
     def _gather(self, shot, depsgraph):
+        shot.seconds |= status.views_stages(shot.scene)
         start = time.perf_counter()
         if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
             if self._progress("Saving passes", 0.0):
@@ -148,6 +150,9 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         path = shot.again.path if shot.again else self.file
         frame = passes.load(path, shot.layer, shot.window)
         saved = shot.again.views if shot.again else self.views
+        if shot.again and views.wanted(shot.scene) > shot.again.wanted:
+            self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
+                                       "the light from all of them", len(saved), views.wanted(shot.scene)))
         further = [light.View(view.load, view.camera) for view in saved]
         shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings, len(further)),
                        "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}

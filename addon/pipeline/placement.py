@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where views must stand to see the surfaces that light the picture. Arrays and a function that casts rays; no Blender.
 
-Rays leave points of the picture as light bounces off them backwards; what they hit is what should be seen, weighed by
-the light it sends to the picture. Places on those rays are free and connected by construction. Of all such places and
-26 directions the one that newly sees most is taken, until nothing much is new.
+Paths leave points of the picture as light bounces off them backwards, and go on from what they hit. That is what should be
+seen, weighed by the light that reaches the picture by way of it. Places on the paths are free and connected by construction.
+Of all such places and 26 directions the one that newly sees most is taken, until nothing much is new.
 
 `cast(origins, directions, limits, nearest=True)` stands for the scene: arrays of (N, 3), (N, 3) and (N,), directions of length 1, to
 (distance, normal, thing): (N,), infinite where nothing lies within the limit; (N, 3), either side; (N,) int. Without
@@ -15,11 +15,12 @@ from itertools import product
 
 import numpy as np
 
-RAYS = 1000                # that look for what lights the picture
+PATHS = 600                # that look for what lights the picture
+DEPTH = 4                  # bounces of a path at most
 PLACES = 60                # on them, that a view may have
 LEAST_GAIN = 0.01          # of all weight, that a further view must newly see
 CLEARANCE = 0.01           # of the scene's size, between a view and any surface
-DIM = 0.1                  # of the mean light, that surfaces in the dark count for: they send the second bounce
+DIM = 0.03                 # of the mean light, that surfaces in the dark count for: the paths end too early for them
 FALL = 0.03                # of all weight: views that see less than when they were placed, by more than that, move
 
 DIRECTIONS = np.array([each for each in product((-1, 0, 1), repeat=3) if any(each)], float)
@@ -28,19 +29,30 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 @dataclass(frozen=True, eq=False)
 class Bounces:
-    """What lights the picture. starts, places, normals: (N, 3), where the rays left the picture and what they hit. weights: (N,),
-    their sum is 1. size: of the scene as far as they reach, metres."""
+    """What lights the picture. starts, places, normals: (N, 3), of each ray. toward: (N,) int, index of the point that starts it, by
+    which light goes on to the picture; -1 for the picture itself. sent: (N,), the light that reaches the picture
+    after it was first reflected, or emitted, here; its sum is 1. weights: (N,), all light that passes here on its way, a
+    share. size: of the scene as far as the paths reach, metres."""
 
     starts: np.ndarray
     places: np.ndarray
     normals: np.ndarray
+    toward: np.ndarray
+    sent: np.ndarray
     weights: np.ndarray
     size: float
+
+    def arrives(self, seen):
+        """The share of light that reaches the picture where only what is seen reflects it. seen: (N,) bool."""
+        whole = seen.copy()
+        for _ in range(DEPTH - 1):
+            whole = seen & np.where(self.toward < 0, True, whole[self.toward])
+        return float(self.sent @ whole)
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """poses: 4 x 4 matrices, view to world. coverage: the share of weight that the main view sees, and after each pose.
+    """poses: 4 x 4 matrices, view to world. coverage: Bounces.arrives() of what the main view sees, and with each pose.
     clearance: from each pose to the next surface, at least, metres."""
 
     poses: list
@@ -49,11 +61,11 @@ class Placement:
 
 
 def pixels(is_surface, rng):
-    """Indices of RAYS pixels, spread evenly over those that show a surface; of all pixels, flat."""
+    """Indices of PATHS pixels, spread evenly over those that show a surface; of all pixels, flat."""
     found = np.flatnonzero(is_surface)
     if not len(found):
         return found
-    return found[np.minimum(((np.arange(RAYS) + rng.random(RAYS)) / RAYS * len(found)).astype(int), len(found) - 1)]
+    return found[np.minimum(((np.arange(PATHS) + rng.random(PATHS)) / PATHS * len(found)).astype(int), len(found) - 1)]
 
 
 def bounces(places, normals, albedo, cast, radiance, rng):
@@ -62,21 +74,35 @@ def bounces(places, normals, albedo, cast, radiance, rng):
     radiance(places, normals, things): (direct light on a white surface, albedo, emission) of what is hit, (N,) each."""
     length = np.linalg.norm(normals, axis=1)
     usable = length > 0.5  # materials of pure emission have no normal
-    starts, albedo = places[usable], albedo[usable]
-    directions = _cosine(normals[usable] / length[usable, None], rng)
-    distance, normal, thing = cast(starts, directions, np.full(len(starts), np.inf))
-    hit = np.isfinite(distance)
-    if not hit.any():
+    places, normals, share = places[usable], normals[usable] / length[usable, None], albedo[usable]
+    toward = np.full(len(places), -1)
+    levels, count = [], 0
+    for _ in range(DEPTH):
+        directions = _cosine(normals, rng)
+        distance, normal, thing = cast(places, directions, np.full(len(places), np.inf))
+        hit = np.isfinite(distance)
+        if not hit.any():
+            break
+        starts, directions, toward, share = places[hit], directions[hit], toward[hit], share[hit]
+        places = starts + directions * distance[hit, None]
+        normals = np.where(np.sum(normal[hit] * directions, 1)[:, None] > 0, -normal[hit], normal[hit])
+        direct, reflects, emission = radiance(places, normals, thing[hit])
+        levels.append((starts, places, normals, toward, share * (reflects * (direct + DIM * direct.mean()) + emission)))
+        toward, share = count + np.arange(len(places)), share * reflects
+        count += len(places)
+        places = places + 1e-4 * distance[hit, None] * normals  # off the surface
+    if not levels:
         return None
-    starts, directions, albedo = starts[hit], directions[hit], albedo[hit]
-    found = starts + directions * distance[hit, None]
-    facing = np.where(np.sum(normal[hit] * directions, 1)[:, None] > 0, -normal[hit], normal[hit])
-    direct, reflects, emission = radiance(found, facing, thing[hit])
-    weights = albedo * (reflects * (direct + DIM * direct.mean()) + emission)
-    if not weights.sum() > 0:  # nothing is lit, or its light is not known
-        weights = np.ones(len(found))
-    low, high = np.percentile(found, (5, 95), axis=0)
-    return Bounces(starts, found, facing, weights / weights.sum(), float(max(np.linalg.norm(high - low), 1e-6)))
+    starts, places, normals, toward, sent = map(np.concatenate, zip(*levels, strict=True))
+    if not sent.sum() > 0:  # nothing is lit, or its light is not known
+        sent = np.ones(len(places))
+    sent = sent / sent.sum()
+    weights = sent.copy()
+    for index in range(count - 1, -1, -1):  # light from far passes all that is nearer to the picture
+        if toward[index] >= 0:
+            weights[toward[index]] += weights[index]
+    low, high = np.percentile(places, (5, 95), axis=0)
+    return Bounces(starts, places, normals, toward, sent, weights / weights.sum(), float(max(np.linalg.norm(high - low), 1e-6)))
 
 
 def place(light, seen, cast, half, most, rng, kept=()):
@@ -91,7 +117,7 @@ def place(light, seen, cast, half, most, rng, kept=()):
             pose = looking(position, axes)
             options.append((pose, sees(pose, half, light, reached)))
     favour = np.where(np.arange(len(options)) < first_new, 1.1, 1.0)
-    poses, coverage = [], [float(share @ seen)]
+    poses, coverage = [], [light.arrives(seen)]
     table = np.array([saw for _, saw in options]).reshape(len(options), len(share))
     while len(poses) < most and len(options):
         gain = (table & ~seen) @ share
@@ -100,15 +126,15 @@ def place(light, seen, cast, half, most, rng, kept=()):
             break
         poses.append(options[best][0])
         seen = seen | table[best]
-        coverage.append(float(share @ seen))
+        coverage.append(light.arrives(seen))
     return Placement(poses, coverage, CLEARANCE * light.size)
 
 
 def covered(light, seen, cast, half, poses):
-    """The share of weight that the main view and those at `poses` see together."""
+    """Bounces.arrives() of what the main view and those at `poses` see together."""
     for pose in poses:
         seen = seen | sees(pose, half, light, visible(pose[:3, 3], light, cast))
-    return float(light.weights @ seen)
+    return light.arrives(seen)
 
 
 def looking(position, direction):

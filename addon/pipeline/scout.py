@@ -24,6 +24,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         scene = wiring.source(depsgraph.scene)
         if scene is None or not views.is_rendered(scene):
             return
+        start = time.perf_counter()
         for view in views.scenes(scene):
             views.drop(view)
         if relight.is_replayed(scene):
@@ -39,6 +40,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
             traceback.print_exc()
             self._warn(scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
                                   "report them", error))
+        status.scouted(scene, time.perf_counter() - start)
 
     def _place(self, scene, depsgraph):
         start = time.perf_counter()
@@ -70,7 +72,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
 
     def _score(self, scene, depsgraph, found, seen, cast):
         """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left out."""
-        shares = [float(found.weights @ seen)]
+        shares = [found.arrives(seen)]
         for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
             if not view.view_layers[0].use:
                 continue
@@ -87,7 +89,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
                 views.drop(view)
                 continue
             seen = seen | saw
-            shares.append(float(found.weights @ seen))
+            shares.append(found.arrives(seen))
         return shares
 
     def _choose(self, scene, depsgraph, found, seen, cast, rng):

@@ -6,6 +6,7 @@ import ctypes
 import os
 import shutil
 import sys
+import time
 
 import bpy
 
@@ -15,6 +16,7 @@ from . import turns
 _messages = {}
 _warnings = {}
 _coverage = {}
+_scouted = {}
 _stages = {}
 _memory = {}
 _failed = False
@@ -46,6 +48,7 @@ def begin(scene):
     """Forget what the render before had to say."""
     _messages.pop(scene.session_uid, None)
     _warnings.pop(scene.session_uid, None)
+    _scouted.pop(scene.session_uid, None)
 
 
 def fail(scene, text):
@@ -82,6 +85,17 @@ def covered(scene, shares, seconds):
 def coverage(scene):
     """(shares, seconds) as covered() was told, or None."""
     return _coverage.get(scene.session_uid)
+
+
+def scouted(scene, seconds):
+    """The views of `scene` are posed, which took so long; EEVEE renders them next."""
+    _scouted[scene.session_uid] = {"place views": seconds}, time.perf_counter()
+
+
+def views_stages(scene):
+    """Seconds by stage, from the scout's beginning until now, of the render that goes on; empty where it has no views. Once."""
+    stages, since = _scouted.pop(scene.session_uid, ({}, 0.0))
+    return stages | ({"EEVEE, views": time.perf_counter() - since} if stages else {})
 
 
 def message(scene):
@@ -153,5 +167,6 @@ def unregister():
     _messages.clear()
     _warnings.clear()
     _coverage.clear()
+    _scouted.clear()
     _stages.clear()
     _memory.clear()

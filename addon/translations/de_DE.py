@@ -64,6 +64,8 @@ TEXTS = {
     "Indirect Light Presets": "Voreinstellungen für indirektes Licht",
     "Sampling": "Abtastung",
     "Total time": "Zeit gesamt",
+    "Place views": "Ansichten aufstellen",
+    "EEVEE, views": "EEVEE, Ansichten",
     "Write passes": "Passes schreiben",
     "Saving passes": "Passes werden gespeichert",
     "Read passes": "Passes lesen",
@@ -339,6 +341,9 @@ TEXTS = {
     "Take the active line out of the list of views. The camera stays in the scene":
         "Die aktive Zeile aus der Liste der Ansichten nehmen. Die Kamera bleibt in der Szene",
     "Seen by the Camera": "Von der Kamera gesehen",
+    "The last render had {} further views, and there are {} in the settings now. Press F12 for the light from all of them":
+        "Das letzte Rendern hatte {} weitere Ansichten, in den Einstellungen sind es jetzt {}. F12 drücken für das Licht aus "
+        "allen",
     "Seen with {} Views": "Mit {} Ansichten gesehen",
     "Placing": "Aufstellen",
     "There can be {} views at most": "Es kann höchstens {} Ansichten geben",

@@ -16,14 +16,15 @@ def with_ray_tracing(on):
 
 def widen(window):
     """Drag the editor's left edge to where the panel has room."""
-    x, y, _, height = window.value("box('PROPERTIES')")
+    _, y, _, height = window.value("box('PROPERTIES')")
+    x = window.value("area('PROPERTIES')[1].x")  # the tabs lie between it and the main region
     window.move(x - 1, y + height / 2)
     window.xdotool("mousedown", 1)
     for left in (20, 100, 170, 180):
         window.move(x - left, y + height / 2)
         time.sleep(0.1)
     window.xdotool("mouseup", 1)
-    window.wait(f"box('PROPERTIES')[0] < {x} - 100")
+    window.wait(f"area('PROPERTIES')[1].x < {x} - 100")
 
 
 def open_panel(window):

@@ -59,16 +59,22 @@ class Window:
         self.log_path = computer.folder / "blender.log"
         self.read_to = 0
         self._start_screen()
+        self.start_blender(*arguments)
+
+    def start_blender(self, *arguments):
         ours, theirs = socket.socketpair()
         with self.log_path.open("a") as log, theirs:
-            self.blender = computer.start(
-                "stdbuf", "-oL", "blender", "--gpu-backend", computer.backend, "--window-geometry", 0, 0, WIDTH, HEIGHT,
+            self.blender = self.computer.start(
+                "stdbuf", "-oL", "blender", "--gpu-backend", self.computer.backend, "--window-geometry", 0, 0, WIDTH, HEIGHT,
                 *arguments, "--python", HERE / "inside.py", stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                 pass_fds=[theirs.fileno()], env=self.display | {
                     "AFTERLIGHT_CONTROL": str(theirs.fileno()),
                     "AFTERLIGHT_TESTS": os.pathsep.join(map(str, [HERE.parent, ROOT / "tools"]))})
         self.socket, self.received = ours, b""
         self.value("bpy.app.version_string")
+
+    def has_ended(self):
+        return self.blender.poll() is not None
 
     def _start_screen(self):
         number, theirs = os.pipe()
@@ -97,7 +103,7 @@ class Window:
         try:
             while b"\n" not in self.received:
                 data = self.socket.recv(1 << 20)
-                assert data, f"Blender has ended:\n{self.log()[-3000:]}"
+                assert data, f"Blender has ended:\n{self.log()[-3000:]}\n{self._crash_report()}"
                 self.received += data
         except (TimeoutError, ConnectionError) as error:
             raise AssertionError(f"Blender does not answer ({error!r}):\n{self.log()[-3000:]}") from error
@@ -161,6 +167,10 @@ class Window:
         raise AssertionError(f"no button of {data_path} in {kind}: {self.picture('not_found')}")
 
     # The whole
+
+    def _crash_report(self):
+        """What Blender wrote as it crashed, if it did: its last operations and where it stood."""
+        return self.computer.call("sh", "-c", "tail -n +1 /tmp/*.crash.txt 2>&1; rm -f /tmp/*.crash.txt")
 
     def log(self):
         return self.log_path.read_text(errors="replace")
