@@ -128,13 +128,16 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         if helper.camera == source.camera and same_time:
             return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source)
         own = helper.camera
-        helper.render.frame_map_old, helper.render.frame_map_new = render.frame_map_old, render.frame_map_new
-        try:
+
+        def set_up():
+            helper.render.frame_map_old, helper.render.frame_map_new = render.frame_map_old, render.frame_map_new
             helper.camera = source.camera
+        turns.surely(set_up)
+        try:
             self.frame_set(source.frame_current, source.frame_subframe)
             return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source)
         finally:
-            helper.camera = own
+            turns.surely(lambda: setattr(helper, "camera", own))
 
     def _gather(self, shot, depsgraph):
         shot.seconds |= status.views_stages(shot.scene)
@@ -143,8 +146,9 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             if self._progress("Saving passes", 0.0):
                 raise light.Cancelled
             relight.forget(shot.scene.session_uid)
-            self.file = passes.save_once(shot.scene)
-            self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
+            with turns.until(self.test_break):
+                self.file = passes.save_once(shot.scene)
+                self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file

@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, leftovers, nodes, passes, relight, status, views, wiring
+from . import checks, leftovers, nodes, passes, relight, status, turns, views, wiring
 from .engine import AfterlightEngine
 
 
@@ -35,8 +35,11 @@ def before_render(scene, *_):
     """Say what will keep the light out even where our engine is never called to say it.
 
     Without a window nothing has followed the edits of a script, and nobody can press Repair: it is done here."""
-    if not scene.afterlight.enabled:
-        return
+    if scene.afterlight.enabled:
+        turns.surely(lambda: _begin(scene))  # Blender calls this in the render's thread
+
+
+def _begin(scene):
     status.begin(scene)
     views.reset()
     passes.discard_early()
@@ -54,7 +57,11 @@ def before_render(scene, *_):
 
 @persistent
 def after_render(*_):
-    """Complete or cancelled: undo _mute()."""
+    """Complete or cancelled."""
+    turns.surely(_end)
+
+
+def _end():
     views.reset()
     passes.discard_early()
     while _muted:

@@ -2,13 +2,12 @@
 """EEVEE's finished passes and the camera that saw them, out of Blender and into arrays."""
 
 import os
-from contextlib import contextmanager
 
 import bpy
 import numpy as np
 
 from .. import light
-from . import leftovers
+from . import leftovers, turns
 from .status import Problem
 
 _early = {}  # (frame, path) by the scene's session_uid
@@ -27,19 +26,22 @@ def save(scene):
     """Write the finished passes of `scene` to a file in Blender's temporary folder and return its path.
 
     Blender hands the pixels of a render to Python in no other way: a multilayer EXR, uncompressed, takes a tenth of
-    a second at 1280 x 720. Raises Problem where it can't be written.
+    a second at 1280 x 720. Raises Problem where it can't be written, light.Cancelled where the render is to stop.
     """
     path = file_path(scene)
     leftovers.claim(bpy.app.tempdir)
+    # Blender takes the format from the scene whose passes it writes, and lets no copy be given.
+    saved = turns.run(lambda: _to_multilayer_exr(scene.render.image_settings))
     try:
-        with _multilayer_exr(scene.render.image_settings):
-            render_result().save_render(path, scene=scene)
+        render_result().save_render(path, scene=scene)
     except (RuntimeError, OSError) as error:
         discard(path)
         if "does not have any image data" in str(error):
             raise Problem('There is no render of "{}" to light. Render that one, not the scene that serves to light it',
                           scene.name) from error
         raise _not_written(_text(error)) from error
+    finally:
+        turns.surely(lambda: _put_back(scene.render.image_settings, saved))
     if not os.path.exists(path):
         raise _not_written("there is no file")
     return path
@@ -240,10 +242,8 @@ def _mapped(path, header):
     return {channel.name: planes[:, index] for index, channel in enumerate(channels)}
 
 
-@contextmanager
-def _multilayer_exr(image_settings):
-    """Image settings for save(), and the user's own again afterwards, whatever happens."""
-    # Blender takes the format from the scene whose passes it writes, and lets no copy be given.
+def _to_multilayer_exr(image_settings):
+    """Image settings for save(). Returns {name: the user's own}."""
     saved = {name: getattr(image_settings, name) for name, prop in image_settings.bl_rna.properties.items()
              if prop.type != "POINTER" and not prop.is_readonly}
     try:
@@ -253,11 +253,16 @@ def _multilayer_exr(image_settings):
         image_settings.exr_codec = "NONE"
         image_settings.use_exr_interleave = True  # half the time to write of one part a pass (docs/blender.md)
         image_settings.use_preview = False
-        yield
-    finally:
-        # What the media type and the format allow depends on those before them.
-        for name in ("media_type", "file_format", *saved):
-            setattr(image_settings, name, saved[name])
+    except BaseException:
+        _put_back(image_settings, saved)
+        raise
+    return saved
+
+
+def _put_back(image_settings, saved):
+    # What the media type and the format allow depends on those before them.
+    for name in ("media_type", "file_format", *saved):
+        setattr(image_settings, name, saved[name])
 
 
 def _not_written(why):

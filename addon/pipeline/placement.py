@@ -15,10 +15,10 @@ from itertools import product
 
 import numpy as np
 
-PATHS = 600                # that look for what lights the picture
+PATHS = 1500               # that look for what lights the picture
 DEPTH = 4                  # bounces of a path at most
-PLACES = 60                # on them, that a view may have
-LEAST_GAIN = 0.01          # of all weight, that a further view must newly see
+PLACES = 150               # on them, that a view may have
+LEAST_GAIN = 0.005         # of all weight, that a further view must newly see
 CLEARANCE = 0.01           # of the scene's size, between a view and any surface
 DIM = 0.03                 # of the mean light, that surfaces in the dark count for: the paths end too early for them
 FALL = 0.03                # of all weight: views that see less than when they were placed, by more than that, move

@@ -8,6 +8,7 @@ import traceback
 import bpy
 import numpy as np
 
+from .. import light
 from ..translations import say
 from . import checks, passes, placement, rays, relight, status, turns, views, wiring
 from .picture import Picture
@@ -25,15 +26,16 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         if scene is None or not views.is_rendered(scene):
             return
         start = time.perf_counter()
-        for view in views.scenes(scene):
-            views.drop(view)
-        if relight.is_replayed(scene):
-            return  # the views that were kept with the frame are used again
-        if any(finding.fatal for finding in checks.findings(scene)):
-            return  # the engine of the light says so
-        views.mirror(scene)
         try:
-            self._place(scene, depsgraph)
+            with turns.until(self.test_break):
+                turns.run(lambda: views.prepare(scene))
+                if relight.is_replayed(scene):
+                    return  # the views that were kept with the frame are used again
+                if any(finding.fatal for finding in checks.findings(scene)):
+                    return  # the engine of the light says so
+                self._place(scene, depsgraph)
+        except light.Cancelled:
+            pass
         except Problem as problem:
             self._warn(scene, say(*problem.args))
         except Exception as error:  # a bug of ours must not cost the light of the main view
@@ -47,7 +49,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
         by_hand = scene.afterlight.views == "MANUAL"
         if by_hand:
-            self._pose_by_hand(scene, depsgraph)
+            turns.run(lambda: self._pose_by_hand(scene, depsgraph))
         geometry = rays.Geometry(depsgraph)
         picture, rng = Picture(scene, camera), np.random.default_rng(scene.afterlight.seed)
         found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng)
@@ -86,7 +88,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
             if not saw.any():
                 self._warn(scene, say('The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
                                       "a wall, or look away. Move it, or remove it from the list", each.camera.name))
-                views.drop(view)
+                turns.run(lambda view=view: views.drop(view))
                 continue
             seen = seen | saw
             shares.append(found.arrives(seen))
@@ -100,13 +102,12 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         if known is None or len(old) > most or (
                 placement.covered(found, seen, cast, half, old) < known.coverage[-1] - placement.FALL):
             known = placement.place(found, seen, cast, half, most, rng, old)
-            views.keep_placed(scene, known)
+            turns.run(lambda: views.keep_placed(scene, known))
             if not known.poses and known.coverage[0] < 1 - placement.FALL:
                 self._warn(scene, say("No views were placed: there is no free place that shows more than the camera does"))
         far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * found.size)
         lens = views.wide_lens(scene, known.clearance / 4, far)
-        for view, pose in zip(views.scenes(scene), known.poses):
-            views.pose(view, scene, pose, lens)
+        turns.run(lambda: [views.pose(view, scene, pose, lens) for view, pose in zip(views.scenes(scene), known.poses)])
         return known.coverage
 
 

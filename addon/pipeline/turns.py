@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The GPU in a window: taken by turns with the interface.
+"""The GPU and the file in a window: taken by turns with the interface.
 
 A render has a thread of its own there. Blender lends it the GPU only together with the lock that its interface draws
 under, and so for the whole of our part nothing could be drawn, and no ESC be seen. Therefore our engine asks for none: what
 it wants of the GPU it leaves here, a call at a time, and the main thread makes the calls between two looks at the window.
+
+So is whatever changes the file during a render. To set a property tags all dependency graphs, and Blender crashes where
+the main thread builds one at that moment.
 """
 
 import queue
@@ -21,6 +24,7 @@ TURN = 0.02     # seconds of calls before the window has its turn
 GAP = 0.002     # seconds that a turn waits for the next call
 RENDERING, IDLE = 0.0, 0.1  # seconds until the next look: while something renders, and else
 PATIENCE = 0.05  # seconds that a call waits before it asks whether it is still wanted
+SURELY = 0.5    # seconds that one waits which must be made
 
 _calls = queue.SimpleQueue()  # (Future, call)
 _open = False
@@ -54,6 +58,19 @@ def run(call):
             if (_stopped() or not _open) and future.cancel():
                 raise light.Cancelled from None
     return future.result()
+
+
+def surely(call):
+    """As run(), for what must be put back though the render is to stop: made here where the main thread does not come
+    round to it, since it waits for the end of the render."""
+    if _is_main():
+        return call()
+    future = Future()
+    _calls.put((future, call))
+    try:
+        return future.result(timeout=SURELY)
+    except TimeoutError:
+        return call() if future.cancel() else future.result()
 
 
 def later(call):

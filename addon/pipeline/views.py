@@ -213,6 +213,13 @@ def keep_placed(scene, found):
                             "clearance": found.clearance}
 
 
+def prepare(scene):
+    """The scout begins: no view is in the frame as yet, and all look as `scene` does."""
+    for view in scenes(scene):
+        drop(view)
+    mirror(scene)
+
+
 def drop(view):
     """Leave a view scene out of this frame."""
     nodes.assign(view.view_layers[0], "use", False)
@@ -257,6 +264,10 @@ def save(scene, depsgraph, warn):
         except Problem as problem:
             warn(say("A view could not be used: {}", say(*problem.args)))
             continue
+        except light.Cancelled:
+            for each in found:
+                passes.discard(each.path)
+            raise
         found.append(Saved(path, view.view_layers[0].name, passes.window(scene)[0], camera(view, depsgraph, scene)))
     return found
 

@@ -7,6 +7,7 @@ import steps
 
 BESIDE_THE_BOX = 110   # pixels from the left, on the panel's name
 IN_THE_VALUES = 250
+DOWN_TO_LAST_RENDER = 32   # pixels
 
 
 def with_ray_tracing(on):
@@ -36,19 +37,25 @@ def open_panel(window):
 def pictured(window, name):
     window.over("VIEW_3D")  # or else a tooltip covers part of it
     time.sleep(1)
-    window.picture(name, "PROPERTIES")
+    return window.picture(name, "PROPERTIES")
 
 
 def test_the_panel(window, afterlight):
+    """As it comes, ticked after a render with the last sub-panel opened, and with something to say."""
     steps.new_box(window)
+    window.run(steps.use, "RADIOSITY")
     widen(window)
     open_panel(window)
-    window.picture("panel_off", "PROPERTIES")
+    pictured(window, "panel_off")
     steps.tick(window)
     window.render()
     window.point_at("afterlight.use_animated_seed", IN_THE_VALUES)
-    window.xdotool("mousemove_relative", 0, 26, "click", 1)  # the name of the sub-panel below: Last Render
+    window.xdotool("mousemove_relative", 0, DOWN_TO_LAST_RENDER, "click", 1)
+    window.over("PROPERTIES")
+    window.xdotool("click", "--repeat", 60, "--delay", 5, 5)
     pictured(window, "panel")
     window.run(with_ray_tracing, True)
+    window.over("PROPERTIES")
+    window.xdotool("click", "--repeat", 60, "--delay", 5, 4)
     pictured(window, "panel_message")
     window.run(with_ray_tracing, False)

@@ -99,14 +99,18 @@ class Window:
 
     def _ask(self, request, timeout):
         self.socket.settimeout(timeout)
-        self.socket.sendall(json.dumps(request, default=str).encode() + b"\n")
         try:
+            self.socket.sendall(json.dumps(request, default=str).encode() + b"\n")
             while b"\n" not in self.received:
                 data = self.socket.recv(1 << 20)
-                assert data, f"Blender has ended:\n{self.log()[-3000:]}\n{self._crash_report()}"
+                if not data:
+                    raise ConnectionError("it has ended")
                 self.received += data
-        except (TimeoutError, ConnectionError) as error:
-            raise AssertionError(f"Blender does not answer ({error!r}):\n{self.log()[-3000:]}") from error
+        except TimeoutError as error:
+            raise AssertionError(f"Blender does not answer after {timeout} s:\n{self.log()[-3000:]}") from error
+        except ConnectionError as error:
+            code = self.blender.wait(30)
+            raise AssertionError(f"Blender has ended with {code}:\n{self.log()[-3000:]}\n{self._crash_report()}") from error
         line, self.received = self.received.split(b"\n", 1)
         reply = json.loads(line)
         assert "error" not in reply, reply["error"]
@@ -170,7 +174,7 @@ class Window:
 
     def _crash_report(self):
         """What Blender wrote as it crashed, if it did: its last operations and where it stood."""
-        return self.computer.call("sh", "-c", "tail -n +1 /tmp/*.crash.txt 2>&1; rm -f /tmp/*.crash.txt")
+        return self.computer.call("sh", "-c", "cat /tmp/*.crash.txt; rm -f /tmp/*.crash.txt")
 
     def log(self):
         return self.log_path.read_text(errors="replace")
