@@ -102,6 +102,7 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
 class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
     bl_label = "Sampling"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
+    bl_order = 1
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.afterlight
@@ -128,6 +129,7 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
 class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
     bl_label = "Last Render"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
+    bl_order = 3
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod

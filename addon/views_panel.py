@@ -21,6 +21,7 @@ class AFTERLIGHT_UL_views(UIList):
 class AFTERLIGHT_PT_views(panel._InRenderProperties, Panel):
     bl_label = "Views"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
+    bl_order = 2
 
     @classmethod
     def poll(cls, context):

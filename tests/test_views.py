@@ -291,6 +291,31 @@ def test_views_look_where_the_light_comes_from(placing):
     assert -found.poses[0][0, 2] > 0.5
 
 
+def test_light_arrives_only_by_way_of_what_is_seen(placing):
+    """A wall that sends 40 % itself, and hands on 60 % from one behind a corner: by itself the far one brings nothing."""
+    points = np.zeros((2, 3))
+    light = placing.Bounces(points, points, points, np.array((-1, 0)), np.array((0.4, 0.6)), np.array((1.0, 0.6)) / 1.6, 1.0)
+    arrived = [light.arrives(np.array(seen)) for seen in ((True, True), (True, False), (False, True), (False, False))]
+    assert arrived == pytest.approx([1, 0.4, 0, 0])
+
+
+def test_views_go_where_light_comes_from_round_a_corner(placing):
+    """Only a wall behind the pillar is lit, which hardly any pixel faces: most light is reflected twice or more."""
+    low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
+
+    def far_wall(places, normals, things):
+        return np.where(places[:, 0] > 1.999, 1.0, 0), np.full(len(places), 0.7), np.zeros(len(places))
+
+    cast, rng = room((low, high), (np.array((0.9, -3, 0)), np.array((1.2, 2, 2.5)))), np.random.default_rng(0)
+    light = placing.bounces(*floor(low, high), cast, far_wall, rng)
+    at_once = light.toward < 0
+    assert light.sent.sum() == pytest.approx(1) and light.sent[at_once].sum() < 0.4
+    assert light.weights[at_once].sum() * light.weights.size > at_once.sum(), "all that goes on passes them"
+    found = placing.place(light, np.zeros(len(light.places), bool), cast, np.tan(np.radians(50)) * np.array((1, 9 / 16)), 7, rng)
+    assert found.coverage[-1] > 0.9
+    assert any(pose[0, 3] > 1.2 or (pose[1, 3] > 2 and -pose[0, 2] > 0) for pose in found.poses), "one looks behind it"
+
+
 def test_nothing_to_see_and_nowhere_to_stand(placing):
     low, high, rng = np.array((-5.0, -5, 0)), np.array((5.0, 5, 0.05)), np.random.default_rng(0)
     def nothing(origins, directions, limits, nearest=True):

@@ -68,8 +68,9 @@ def pixels(is_surface, rng):
     return found[np.minimum(((np.arange(PATHS) + rng.random(PATHS)) / PATHS * len(found)).astype(int), len(found) - 1)]
 
 
-def bounces(places, normals, albedo, cast, radiance, rng):
+def bounces(places, normals, albedo, cast, radiance, rng, most=DEPTH):
     """Bounces of a picture, or None where its light comes from nothing. places, normals: (N, 3), of pixels(). albedo: (N,).
+    most: bounces that count; at most DEPTH are followed.
 
     radiance(places, normals, things): (direct light on a white surface, albedo, emission) of what is hit, (N,) each."""
     length = np.linalg.norm(normals, axis=1)
@@ -77,7 +78,7 @@ def bounces(places, normals, albedo, cast, radiance, rng):
     places, normals, share = places[usable], normals[usable] / length[usable, None], albedo[usable]
     toward = np.full(len(places), -1)
     levels, count = [], 0
-    for _ in range(DEPTH):
+    for _ in range(min(most, DEPTH)):
         directions = _cosine(normals, rng)
         distance, normal, thing = cast(places, directions, np.full(len(places), np.inf))
         hit = np.isfinite(distance)

@@ -52,7 +52,8 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
             turns.run(lambda: self._pose_by_hand(scene, depsgraph))
         geometry = rays.Geometry(depsgraph)
         picture, rng = Picture(scene, camera), np.random.default_rng(scene.afterlight.seed)
-        found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng)
+        found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng,
+                                  scene.afterlight.bounces)
         if found is None:
             if not by_hand:
                 self._warn(scene, say("No views were placed: no surface lights what the camera sees"))

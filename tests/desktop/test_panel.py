@@ -7,7 +7,7 @@ import steps
 
 BESIDE_THE_BOX = 110   # pixels from the left, on the panel's name
 IN_THE_VALUES = 250
-DOWN_TO_LAST_RENDER = 32   # pixels
+DOWN_TO_LAST_RENDER = 126  # pixels: past a button and three lines on coverage
 
 
 def with_ray_tracing(on):
@@ -49,8 +49,10 @@ def test_the_panel(window, afterlight):
     pictured(window, "panel_off")
     steps.tick(window)
     window.render()
-    window.point_at("afterlight.use_animated_seed", IN_THE_VALUES)
-    window.xdotool("mousemove_relative", 0, DOWN_TO_LAST_RENDER, "click", 1)
+    window.point_at("afterlight.view_count", IN_THE_VALUES)
+    window.xdotool("mousemove_relative", 0, DOWN_TO_LAST_RENDER)
+    time.sleep(0.5)
+    window.click()
     window.over("PROPERTIES")
     window.xdotool("click", "--repeat", 60, "--delay", 5, 5)
     pictured(window, "panel")
