@@ -33,6 +33,7 @@ class Shot:
     layer: str
     window: tuple
     again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
+    views: int = 0                   # how many the settings ask for
     camera: light.Camera = None
     world: np.ndarray = None         # its light, where surfaces are to take it from each other
     settings: light.Settings = None
@@ -73,7 +74,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
                                             "to EEVEE and tick Indirect Light"))
             return
         again = relight.kept(source) if relight.is_replayed(source) else None
-        self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0], again)
+        self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0], again, views.wanted(source))
         if before and (self.file or again):  # another view layer of the same frame
             shot.seconds = before.seconds
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
@@ -113,7 +114,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
             scene = self.shot.scene
-            relight.keep(scene, self.file, self.shot.camera, self.views, views.wanted(scene))
+            relight.keep(scene, self.file, self.shot.camera, self.views, self.shot.views)
         elif self.file:
             for path in (self.file, *(view.path for view in self.views)):
                 passes.discard(path)
@@ -154,9 +155,9 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         path = shot.again.path if shot.again else self.file
         frame = passes.load(path, shot.layer, shot.window)
         saved = shot.again.views if shot.again else self.views
-        if shot.again and views.wanted(shot.scene) > shot.again.wanted:
+        if shot.again and shot.views > shot.again.wanted:
             self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
-                                       "the light from all of them", len(saved), views.wanted(shot.scene)))
+                                       "the light from all of them", len(saved), shot.views))
         further = [light.View(view.load, view.camera) for view in saved]
         shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings, len(further)),
                        "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}

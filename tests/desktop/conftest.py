@@ -43,8 +43,8 @@ def session(computer):
 @pytest.fixture
 def window(session):
     """The running Blender. Whatever a test does with it, Blender may print no traceback and report no error."""
-    if session.has_ended():  # it crashed in the test before, which is red
-        session.start_blender()
+    if session.is_worn_out():
+        session.restart_blender()
     session.new_log()
     yield session
     # But for what Blender says of itself, such as that there are no drivers for Cycles here.

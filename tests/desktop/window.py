@@ -14,6 +14,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 WIDTH, HEIGHT = 1440, 900
+MOST_MAPPINGS = 40_000  # a test adds some thousands
 F12 = "96"  # its key code: by name, xdotool holds Alt with it
 
 
@@ -73,8 +74,24 @@ class Window:
         self.socket, self.received = ours, b""
         self.value("bpy.app.version_string")
 
-    def has_ended(self):
-        return self.blender.poll() is not None
+    def is_worn_out(self):
+        """Whether it has crashed, or soon will: Blender gives no descriptor set of lavapipe back, each is a mapping of the
+        process's memory, and Linux allows 65,530 of those (docs/desktop.md)."""
+        return self.blender.poll() is not None or (
+            Path(f"/proc/{self.blender.pid}/maps").read_bytes().count(b"\n") > MOST_MAPPINGS)
+
+    def restart_blender(self):
+        self._end(self.blender)
+        self.socket.close()
+        self.start_blender()
+
+    def _end(self, process):
+        process.terminate()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
 
     def _start_screen(self):
         number, theirs = os.pipe()
@@ -200,10 +217,5 @@ class Window:
 
     def close(self):
         for process in (self.blender, self.screen):
-            process.terminate()
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+            self._end(process)
         self.socket.close()
