@@ -17,9 +17,13 @@ def with_ray_tracing(on):
 
 def widen(window):
     """Drag the editor's left edge to where the panel has room."""
+    window.over("PROPERTIES")
+    window.key("Escape")  # away with the splash screen, where this is the first that a Blender sees of the mouse
+    time.sleep(0.5)
     _, y, _, height = window.value("box('PROPERTIES')")
     x = window.value("area('PROPERTIES')[1].x")  # the tabs lie between it and the main region
     window.move(x - 1, y + height / 2)
+    time.sleep(0.5)
     window.xdotool("mousedown", 1)
     for left in (20, 100, 170, 180):
         window.move(x - left, y + height / 2)

@@ -11,7 +11,7 @@ LIT = {}  # the picture by method and backend
 def test_install_and_find_the_panel(window, afterlight):
     steps.new_box(window)
     window.point_at(steps.ENABLED)
-    window.picture("panel")
+    window.picture("panel_found")
 
 
 @pytest.mark.parametrize("method", ["PAPER", "RADIOSITY"])
