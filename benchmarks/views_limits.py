@@ -104,7 +104,7 @@ def main():
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         scene = scenes.box(bpy.context.scene, samples=1)
         CASES[name](scene)
-        scene.afterlight.views, scene.afterlight.enabled = "AUTOMATIC", True
+        scene.afterlight.method, scene.afterlight.views, scene.afterlight.enabled = "RADIOSITY", "AUTOMATIC", True
         bpy.ops.render.render()
         (shares, first), warnings = status.coverage(scene), status.warnings(scene)
         bpy.ops.render.render()
