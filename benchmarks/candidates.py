@@ -47,8 +47,8 @@ class Candidate:
     """One way to render the scene. group: the curve of the plot that it belongs to. mode(scene): a context in which the
     scene is rendered so. bounced(scene, final, plain): `indirect` of the frame just rendered.
 
-    final: what Blender writes. indirect: the diffuse light in it that no lamp sent directly. seconds: of each timed frame. failure: why
-    there are none. bounces: for references of their own, whose noise counts too.
+    final: what Blender writes. indirect: the diffuse light in it that no lamp sent directly. seconds: of each timed frame.
+    failure: why there are none. bounces: for references of their own, whose noise counts too.
     """
 
     name: str
@@ -182,9 +182,8 @@ def short(bounces, samples):
     """Cycles with few samples."""
     def bounced(scene, final, plain):
         found = references.read(scene)["indirect"]
-        for alone, shines in ((references.MESHES, references.emissive), (references.WORLD, references.world_shines)):
-            if shines(scene):
-                found = found + references.render(scene, alone, samples, SEED)["direct"]
+        for alone in references.alone(scene):
+            found = found + references.render(scene, alone, samples, SEED)["direct"]
         return found
     return Candidate(f"Cycles, {samples} sample{'s' * (samples > 1)}", "Cycles",
                      lambda scene: references.as_cycles(scene, bounces, samples, SEED), bounced)
@@ -235,7 +234,8 @@ def look(scene, final, afterlight):
         passes.discard(path)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
-    return Plain(final, diffuse(scene), world_light(scene), found, camera)
+    direct = diffuse(scene)  # before world_light() renders again
+    return Plain(final, direct, world_light(scene), found, camera)
 
 
 def world_light(scene):
@@ -243,7 +243,7 @@ def world_light(scene):
     import bpy
     if not references.world_shines(scene):
         return np.zeros((scene.render.resolution_y, scene.render.resolution_x, 3), np.float32)
-    lamps = [thing for thing in references.shown(scene) if thing.type == "LIGHT" and not thing.hide_render]
+    lamps = [lamp for lamp in references.lamps(scene) if not lamp.hide_render]
     try:
         for lamp in lamps:
             lamp.hide_render = True

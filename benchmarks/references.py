@@ -109,7 +109,7 @@ class Truth:
     """All references of one scene: {0, 1, N: Reference}, MESHES where meshes shine, WORLD where the world does."""
 
     def __init__(self, scene, bounces, source, folder=CACHE):
-        self.alone = {number for number, shines in ((MESHES, emissive), (WORLD, world_shines)) if shines(scene)}
+        self.alone = alone(scene)
         self.of = {number: Reference(scene, number, source, folder) for number in sorted({0, 1, bounces} | self.alone)}
         self.longest = bounces
 
@@ -195,13 +195,12 @@ def as_cycles(scene, bounces, samples, seed=0):
                          "filter_width": scene.render.filter_size}
     changes = [(scene.cycles, name, value) for name, value in wanted.items()]
     changes += [(layer(scene), f"use_pass_{name}", True) for name in PASSES]
-    lamps = [thing for thing in shown(scene) if thing.type == "LIGHT"]
-    changes += [(lamp, "visible_camera", False) for lamp in lamps]  # EEVEE shows none
+    changes += [(lamp, "visible_camera", False) for lamp in lamps(scene)]  # EEVEE shows none
     changes += [(light.cycles, "use_multiple_importance_sampling", False) for light in shadowless(scene)]
     if bounces in (0, WORLD):
         changes += [(mesh, "visible_diffuse", False) for mesh in emissive(scene)]
     if bounces in (MESHES, WORLD):
-        changes += [(lamp, "hide_render", True) for lamp in lamps]
+        changes += [(lamp, "hide_render", True) for lamp in lamps(scene)]
     if bounces == MESHES:
         changes += [(scene, "world", None), (layer(scene), "world_override", None)]
     changes += [(scene.render, "engine", "CYCLES")]
@@ -248,10 +247,20 @@ def shown(scene):
                   key=lambda thing: thing.name_full)
 
 
+def lamps(scene):
+    """Light objects of `scene` and of what it instances."""
+    return [thing for thing in shown(scene) if thing.type == "LIGHT"]
+
+
+def alone(scene):
+    """Of MESHES and WORLD, what shines in a scene: its direct light is rendered by itself."""
+    return {number for number, shines in ((MESHES, emissive), (WORLD, world_shines)) if shines(scene)}
+
+
 def shadowless(scene):
     """Light datablocks that cast no shadows. Cycles' rays towards them pass through all surfaces, but those that it mixes
     in by multiple importance sampling do not: what arrives would then depend on how many other lights there are."""
-    return sorted({thing.data for thing in shown(scene) if thing.type == "LIGHT" and not thing.data.use_shadow},
+    return sorted({lamp.data for lamp in lamps(scene) if not lamp.data.use_shadow},
                   key=lambda light: light.name_full)
 
 

@@ -187,9 +187,9 @@ def passes_through(eye, start, path, low, high):
     return np.abs(gap_low - gap_high) < CONTINUOUS * whole
 
 
-def what_blocks(eyes, start, end, jitter, steps):
-    """(passed, within), (n,) bool each. passed: some view sees the way pass through a surface. within: some place on it
-    lies close behind a view's surfaces, and is seen free by none. start, end: (n, 3)."""
+def is_blocked(eyes, start, end, jitter, steps):
+    """(n,) bool: some view sees the way pass through a surface, or some place on it lies close behind a view's surfaces and
+    is seen free by none. start, end: (n, 3)."""
     share = (np.arange(steps)[:, None] + np.broadcast_to(jitter, len(start))) / steps    # (steps, n)
     path = end - start
     places = start + path * share[..., None]
@@ -205,12 +205,7 @@ def what_blocks(eyes, start, end, jitter, steps):
         within |= hidden & (gap > -thickness)
         step, way = np.nonzero(((seen[:-1] & hidden[1:]) | (hidden[:-1] & seen[1:])) & both)
         passed[step, way] |= passes_through(eye, start[way], path[way], share[step, way], share[step + 1, way])
-    return passed.any(0), (within & ~free & counted).any(0)
-
-
-def is_blocked(eyes, start, end, jitter, steps):
-    """(n,) bool: by either."""
-    return np.logical_or(*what_blocks(eyes, start, end, jitter, steps))
+    return passed.any(0) | (within & ~free & counted).any(0)
 
 
 def power_of(sent):

@@ -95,7 +95,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         try:
             if shot.problem:
                 raise Problem("{}", shot.problem)
-            picture = self._gather(shot, depsgraph)
+            with turns.until(self.test_break):
+                picture = self._gather(shot, depsgraph)
         except light.Cancelled:
             pass
         except (Problem, light.GpuUnavailable) as problem:
@@ -113,8 +114,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
-            scene = self.shot.scene
-            relight.keep(scene, self.file, self.shot.camera, self.views, self.shot.views)
+            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views, self.shot.views)
         elif self.file:
             for path in (self.file, *(view.path for view in self.views)):
                 passes.discard(path)
@@ -147,9 +147,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             if self._progress("Saving passes", 0.0):
                 raise light.Cancelled
             relight.forget(shot.scene.session_uid)
-            with turns.until(self.test_break):
-                self.file = passes.save_once(shot.scene)
-                self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
+            self.file = passes.save_once(shot.scene)
+            self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         start = time.perf_counter()
         path = shot.again.path if shot.again else self.file
@@ -165,11 +164,10 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}
-        with turns.until(self.test_break):
-            if isinstance(shot.settings, light.Draws):
-                picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, shot.world, **options)
-            else:
-                picture = light.gather_indirect(frame, shot.camera, shot.settings, **options)
+        if isinstance(shot.settings, light.Draws):
+            picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, shot.world, **options)
+        else:
+            picture = light.gather_indirect(frame, shot.camera, shot.settings, **options)
         for name, count in broken.items():
             self.report({"WARNING"}, say(
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "

@@ -36,7 +36,7 @@ def before_render(scene, *_):
 
     Without a window nothing has followed the edits of a script, and nobody can press Repair: it is done here."""
     if scene.afterlight.enabled:
-        turns.surely(lambda: _begin(scene))  # Blender calls this in the render's thread
+        turns.surely(lambda: _begin(scene))  # in a window Blender calls this in the render's thread
 
 
 def _begin(scene):
@@ -62,6 +62,7 @@ def after_render(*_):
 
 
 def _end():
+    """Undo what views and _mute() did to the file."""
     views.reset()
     passes.discard_early()
     while _muted:

@@ -89,13 +89,15 @@ def coverage(scene):
 
 def scouted(scene, seconds):
     """The views of `scene` are posed, which took so long; EEVEE renders them next."""
-    _scouted[scene.session_uid] = {"place views": seconds}, time.perf_counter()
+    _scouted[scene.session_uid] = seconds, time.perf_counter()
 
 
 def views_stages(scene):
     """Seconds by stage, from the scout's beginning until now, of the render that goes on; empty where it has no views. Once."""
-    stages, since = _scouted.pop(scene.session_uid, ({}, 0.0))
-    return stages | ({"EEVEE, views": time.perf_counter() - since} if stages else {})
+    if scene.session_uid not in _scouted:
+        return {}
+    seconds, since = _scouted.pop(scene.session_uid)
+    return {"place views": seconds, "EEVEE, views": time.perf_counter() - since}
 
 
 def message(scene):

@@ -49,8 +49,7 @@ def run(call):
         return call()
     if _stopped():
         raise light.Cancelled
-    future = Future()
-    _calls.put((future, call))
+    future = _leave(call)
     while not future.done():
         try:
             future.exception(timeout=PATIENCE)
@@ -65,8 +64,7 @@ def surely(call):
     round to it, since it waits for the end of the render."""
     if _is_main():
         return call()
-    future = Future()
-    _calls.put((future, call))
+    future = _leave(call)
     try:
         return future.result(timeout=SURELY)
     except TimeoutError:
@@ -78,7 +76,7 @@ def later(call):
     if _is_main():
         call()
     else:
-        _calls.put((Future(), call))
+        _leave(call)
 
 
 def after_render(call):
@@ -87,6 +85,13 @@ def after_render(call):
         call()
     else:
         bpy.app.timers.register(lambda: IDLE if bpy.app.is_job_running("RENDER") else call(), persistent=True)
+
+
+def _leave(call):
+    """The Future of a call that the main thread is to make."""
+    future = Future()
+    _calls.put((future, call))
+    return future
 
 
 def _is_main():

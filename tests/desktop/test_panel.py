@@ -41,7 +41,7 @@ def open_panel(window):
 def pictured(window, name):
     window.over("VIEW_3D")  # or else a tooltip covers part of it
     time.sleep(1)
-    return window.picture(name, "PROPERTIES")
+    window.picture(name, "PROPERTIES")
 
 
 def test_the_panel(window, afterlight):
