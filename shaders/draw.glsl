@@ -51,7 +51,8 @@ void main()
     // The views that show the receiver's surroundings.
     uint watchers = 0u;
     int watching = 0;
-    for (int view = 0; view < views.depths.w; view++) {
+    for (uint left = all_views(); left != 0u; left &= left - 1u) {
+      int view = findLSB(left);
       if (is_inside(place_in_grid(view, place), views.emitters[view].yz)) {
         watchers |= 1u << view;
         watching++;

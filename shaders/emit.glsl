@@ -30,7 +30,8 @@ float own_share(int own, vec3 place, vec3 normal, float depth)
 {
   float mine = 1.0 / shown_area(own, place, normal, depth), all = mine;
   vec3 eye = to_eye(own, place);
-  for (int view = 0; view < views.depths.w; view++) {
+  for (uint left = all_views(); left != 0u; left &= left - 1u) {
+    int view = findLSB(left);
     vec3 projected = project(view, place);
     float found = view == own ? 0.0 : depth_at(view, projected);
     if (found > 0.0 && shows(view, place, normal, eye, projected, found)) {

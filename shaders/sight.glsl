@@ -57,7 +57,8 @@ bool is_blocked(vec3 from, vec3 to, float jitter)
   uint counted = (most >= 31 ? 0xFFFFFFFFu : (1u << (most + 1)) - 1u) & ~((1u << max(least, 0)) - 1u);
   uint is_free = 0u, is_within = 0u;
   float thickness = THICKNESS * distance(from, to), each = 1.0 / float(max(steps, 1));
-  for (int view = 0; view < views.depths.w && steps > 0; view++) {
+  for (uint left = steps > 0 ? all_views() : 0u; left != 0u; left &= left - 1u) {
+    int view = findLSB(left);
     vec4 start = projection_of(view, from), path = projection_of(view, to) - start;
     uint seen = 0u, hidden = 0u;
     for (int k = 0; k < steps; k++) {

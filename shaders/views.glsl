@@ -10,6 +10,12 @@ struct Receiver {
   bool is_surface;
 };
 
+// A bit for each. Loops go over these: drivers write a loop over an array's indices out, and translate its body ten times.
+uint all_views()
+{
+  return (1u << uint(views.depths.w)) - 1u;
+}
+
 vec3 to_view(int view, vec3 place)
 {
   vec4 p = vec4(place, 1.0);
