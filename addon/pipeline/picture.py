@@ -17,10 +17,10 @@ class Picture:
         self._frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
         self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
 
-    def receivers(self, rng):
-        """(places, normals, albedo) of pixels spread over the picture."""
+    def receivers(self, count, rng):
+        """(places, normals, albedo) of `count` pixels spread over the picture."""
         frame = self._frame
-        flat = placement.pixels((frame.depth > 0) & (frame.depth < light.FARTHEST), rng)
+        flat = placement.pixels((frame.depth > 0) & (frame.depth < light.FARTHEST), count, rng)
         row, column = np.divmod(flat, frame.size[0])
         places = passes.positions(frame, self._camera, flat)
         normals = np.stack([axis[row, column] for axis in frame.normal], -1).astype(float)

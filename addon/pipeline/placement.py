@@ -3,21 +3,26 @@
 
 Paths leave points of the picture as light bounces off them backwards, and go on from what they hit. That is what should be
 seen, weighed by the light that reaches the picture by way of it. Places on the paths are free and connected by construction.
-Of all such places and 26 directions the one that newly sees most is taken, until nothing much is new.
+Of all such places and 26 directions the one that newly sees most is taken, until nothing much is new; then each is taken
+back, and what is best beside all others put in its stead. Other paths than those the places were chosen by say how much of the
+light is seen: the views fit their own better than the truth.
 
 `cast(origins, directions, limits, nearest=True)` stands for the scene: arrays of (N, 3), (N, 3) and (N,), directions of length 1, to
 (distance, normal, thing): (N,), infinite where nothing lies within the limit; (N, 3), either side; (N,) int. Without
 `nearest` any hit within the limit will do, and only whether there is one matters.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
-PATHS = 1500               # that look for what lights the picture
+PATHS = 1500               # that tell how much of the light is seen
+CHOOSING_PATHS = 6000      # that places are chosen by. Light may come by few of them, through a door,
+CHOOSING_POINTS = 3000     # so these are taken from what they hit, as often as there is light
 DEPTH = 4                  # bounces of a path at most
-PLACES = 150               # on them, that a view may have
+PLACES = 200               # on them, that a view may have
+ROUNDS = 3                 # of taking views back, at most
 LEAST_GAIN = 0.005         # of all weight, that a further view must newly see
 CLEARANCE = 0.01           # of the scene's size, between a view and any surface
 DIM = 0.03                 # of the mean light, that surfaces in the dark count for: the paths end too early for them
@@ -42,6 +47,14 @@ class Bounces:
     weights: np.ndarray
     size: float
 
+    def drawn(self, seen, count, rng):
+        """(Bounces, seen) of `count` draws from all, each as often as its weight. They don't know what they are toward."""
+        ends = np.cumsum(self.weights)
+        at = (np.arange(count) + rng.random(count)) / count * ends[-1]
+        which, times = np.unique(np.minimum(np.searchsorted(ends, at), len(ends) - 1), return_counts=True)
+        return replace(self, starts=self.starts[which], places=self.places[which], normals=self.normals[which], toward=None,
+                       sent=None, weights=times / count), seen[which]
+
     def arrives(self, seen):
         """The share of light that reaches the picture where only what is seen reflects it. seen: (N,) bool."""
         whole = seen.copy()
@@ -52,20 +65,20 @@ class Bounces:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """poses: 4 x 4 matrices, view to world. coverage: Bounces.arrives() of what the main view sees, and with each pose.
-    clearance: from each pose to the next surface, at least, metres."""
+    """poses: 4 x 4 matrices, view to world. coverage: what covered() says of them. clearance: from each pose to the next
+    surface, at least, metres."""
 
     poses: list
     coverage: list
     clearance: float
 
 
-def pixels(is_surface, rng):
-    """Indices of PATHS pixels, spread evenly over those that show a surface; of all pixels, flat."""
+def pixels(is_surface, count, rng):
+    """Indices of `count` pixels, spread evenly over those that show a surface; of all pixels, flat."""
     found = np.flatnonzero(is_surface)
     if not len(found):
         return found
-    return found[np.minimum(((np.arange(PATHS) + rng.random(PATHS)) / PATHS * len(found)).astype(int), len(found) - 1)]
+    return found[np.minimum(((np.arange(count) + rng.random(count)) / count * len(found)).astype(int), len(found) - 1)]
 
 
 def bounces(places, normals, albedo, cast, radiance, rng, most=DEPTH):
@@ -107,35 +120,50 @@ def bounces(places, normals, albedo, cast, radiance, rng, most=DEPTH):
 
 
 def place(light, seen, cast, half, most, rng, kept=()):
-    """Placement of at most `most` views. seen: (N,) bool, what the main view sees of `light`. half: tangents of half the
+    """Poses of at most `most` views. seen: (N,) bool, what the main view sees of `light`. half: tangents of half the
     views' fields. kept: poses that stay before others are chosen where they see as much."""
-    share = light.weights
+    light, seen = light.drawn(seen, CHOOSING_POINTS, rng)
     options = [(pose, sees(pose, half, light, visible(pose[:3, 3], light, cast))) for pose in kept]
-    first_new = len(options)
     for position in _free_places(light, cast, rng):
         reached = visible(position, light, cast)
-        for axes in DIRECTIONS:
-            pose = looking(position, axes)
-            options.append((pose, sees(pose, half, light, reached)))
-    favour = np.where(np.arange(len(options)) < first_new, 1.1, 1.0)
-    poses, coverage = [], [light.arrives(seen)]
-    table = np.array([saw for _, saw in options]).reshape(len(options), len(share))
-    while len(poses) < most and len(options):
-        gain = (table & ~seen) @ share
+        options += [(pose, sees(pose, half, light, reached)) for pose in (looking(position, axes) for axes in DIRECTIONS)]
+    if not options:
+        return []
+    poses, saw = zip(*options, strict=True)
+    saw = np.array(saw)
+    saw_as_number, favour = saw.astype(np.float32), np.where(np.arange(len(poses)) < len(kept), 1.1, 1.0)
+
+    def best_beside(chosen):
+        """(option, what it newly sees) beside those chosen."""
+        gain = saw_as_number @ np.where(seen | saw[chosen].any(0), 0, light.weights).astype(np.float32)
         best = int(np.argmax(gain * favour))
-        if gain[best] < LEAST_GAIN:
+        return best, gain[best]
+
+    chosen = []
+    while len(chosen) < most:
+        best, gain = best_beside(chosen)
+        if gain < LEAST_GAIN:
             break
-        poses.append(options[best][0])
-        seen = seen | table[best]
-        coverage.append(light.arrives(seen))
-    return Placement(poses, coverage, CLEARANCE * light.size)
+        chosen.append(best)
+    for _ in range(ROUNDS):
+        before = list(chosen)
+        for option in before:
+            chosen.remove(option)
+            best, gain = best_beside(chosen)
+            if gain >= LEAST_GAIN:
+                chosen.append(best)
+        if set(chosen) == set(before):
+            break
+    return [poses[option] for option in chosen]
 
 
 def covered(light, seen, cast, half, poses):
-    """Bounces.arrives() of what the main view and those at `poses` see together."""
+    """Bounces.arrives() of what the main view sees, and with each pose."""
+    shares = [light.arrives(seen)]
     for pose in poses:
         seen = seen | sees(pose, half, light, visible(pose[:3, 3], light, cast))
-    return light.arrives(seen)
+        shares.append(light.arrives(seen))
+    return shares
 
 
 def looking(position, direction):

@@ -52,17 +52,22 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
             turns.run(lambda: self._pose_by_hand(scene, depsgraph))
         geometry = rays.Geometry(depsgraph)
         picture, rng = Picture(scene, camera), np.random.default_rng(scene.afterlight.seed)
-        found = placement.bounces(*picture.receivers(rng), geometry.cast, picture.radiance_by(geometry, rng), rng,
-                                  scene.afterlight.bounces)
-        if found is None:
+
+        def look(paths):
+            """(Bounces or None, what the main view sees of it) of so many paths."""
+            light = placement.bounces(*picture.receivers(paths, rng), geometry.cast, picture.radiance_by(geometry, rng), rng,
+                                      scene.afterlight.bounces)
+            return light, light and picture.sees(light.places, light.normals)[0]
+
+        light, seen = look(placement.PATHS)
+        if light is None:
             if not by_hand:
                 self._warn(scene, say("No views were placed: no surface lights what the camera sees"))
             return
-        seen, _, _ = picture.sees(found.places, found.normals)
         if by_hand:
-            shares = self._score(scene, depsgraph, found, seen, geometry.cast)
+            shares = self._score(scene, depsgraph, light, seen, geometry.cast)
         else:
-            shares = self._choose(scene, depsgraph, found, seen, geometry.cast, rng)
+            shares = self._choose(scene, depsgraph, light, seen, geometry.cast, look, rng)
         status.covered(scene, shares, time.perf_counter() - start)
 
     def _pose_by_hand(self, scene, depsgraph):
@@ -73,43 +78,45 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
                 evaluated = each.camera.evaluated_get(depsgraph)
                 views.pose(view, scene, evaluated.matrix_world, views.lens_of(evaluated, depsgraph, scene))
 
-    def _score(self, scene, depsgraph, found, seen, cast):
+    def _score(self, scene, depsgraph, light, seen, cast):
         """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left out."""
-        shares = [found.arrives(seen)]
+        shares = [light.arrives(seen)]
         for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
             if not view.view_layers[0].use:
                 continue
             camera = views.camera(view, depsgraph, scene)
             frame = passes.window(scene)[0][2:]
-            row, _, depth = passes.project(found.places, frame, camera)
+            row, _, depth = passes.project(light.places, frame, camera)
             eye = camera.position
             if camera.orthographic:
-                eye = found.places + np.outer(depth, camera.rotation[2])
-            saw = placement.visible(eye, found, cast) & (row >= 0)
+                eye = light.places + np.outer(depth, camera.rotation[2])
+            saw = placement.visible(eye, light, cast) & (row >= 0)
             if not saw.any():
                 self._warn(scene, say('The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
                                       "a wall, or look away. Move it, or remove it from the list", each.camera.name))
                 turns.run(lambda view=view: views.drop(view))
                 continue
             seen = seen | saw
-            shares.append(found.arrives(seen))
+            shares.append(light.arrives(seen))
         return shares
 
-    def _choose(self, scene, depsgraph, found, seen, cast, rng):
+    def _choose(self, scene, depsgraph, light, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
-        half, most = views.half_field(scene), scene.afterlight.view_count
-        known = views.placed(scene)
+        half, most, known = views.half_field(scene), scene.afterlight.view_count, views.placed(scene)
         old = known.poses if known else []
-        if known is None or len(old) > most or (
-                placement.covered(found, seen, cast, half, old) < known.coverage[-1] - placement.FALL):
-            known = placement.place(found, seen, cast, half, most, rng, old)
+        shares = placement.covered(light, seen, cast, half, old)
+        if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL:
+            more, more_seen = look(placement.CHOOSING_PATHS)
+            poses = placement.place(more, more_seen, cast, half, most, rng, old) if more else []
+            shares = placement.covered(light, seen, cast, half, poses)
+            known = placement.Placement(poses, shares, placement.CLEARANCE * light.size)
             turns.run(lambda: views.keep_placed(scene, known))
-            if not known.poses and known.coverage[0] < 1 - placement.FALL:
+            if not poses and shares[0] < 1 - placement.FALL:
                 self._warn(scene, say("No views were placed: there is no free place that shows more than the camera does"))
-        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * found.size)
+        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * light.size)
         lens = views.wide_lens(scene, known.clearance / 4, far)
         turns.run(lambda: [views.pose(view, scene, pose, lens) for view, pose in zip(views.scenes(scene), known.poses)])
-        return known.coverage
+        return shares
 
 
 def register():
