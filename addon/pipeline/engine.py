@@ -81,7 +81,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         if not shot.problem:
             frame = again.frame if again else source.frame_current
             shot.settings = settings.light_settings(source.afterlight, frame)
-            shot.camera = again.camera if again else self._look(depsgraph, source)
+            shot.camera = again.camera if again else self._look(depsgraph, source, shot.layer)
             shot.world = world.light(depsgraph) if source.afterlight.use_world_shadow else None
 
     def render(self, depsgraph):
@@ -120,14 +120,14 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
                 passes.discard(path)
         self.file, self.views = "", ()
 
-    def _look(self, depsgraph, source):
-        """light.Camera of the frame. `source`'s camera is evaluated through our own depsgraph, with nothing else of
+    def _look(self, depsgraph, source, layer):
+        """light.Camera of the frame's view layer. `source`'s camera is evaluated through our own depsgraph, with nothing else of
         the scene but what moves the camera."""
         helper, render = depsgraph.scene, source.render
         same_time = ((helper.render.frame_map_old, helper.render.frame_map_new, helper.frame_subframe)
                      == (render.frame_map_old, render.frame_map_new, source.frame_subframe))
         if helper.camera == source.camera and same_time:
-            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source)
+            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source, layer)
         own = helper.camera
 
         def set_up():
@@ -136,7 +136,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         turns.surely(set_up)
         try:
             self.frame_set(source.frame_current, source.frame_subframe)
-            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source)
+            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source, layer)
         finally:
             turns.surely(lambda: setattr(helper, "camera", own))
 

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from .. import light
-from . import leftovers, turns
+from . import leftovers, sampling, turns
 from .status import Problem
 
 _early = {}  # (frame, path) by the scene's session_uid
@@ -166,19 +166,21 @@ def window(scene):
     return (x, y, pixel(render.border_max_x, full[0]) - x, pixel(render.border_max_y, full[1]) - y), full
 
 
-def camera(evaluated, depsgraph, scene):
-    """light.Camera of an evaluated camera object, for the part of `scene`'s frame that is rendered.
+def camera(evaluated, depsgraph, scene, layer=None):
+    """light.Camera of an evaluated camera object, for the part of `scene`'s frame that is rendered. layer: name of the view layer,
+    by default the first that is rendered.
 
     From Blender's own projection matrix, so that lens, sensor fit, shift and pixel aspect are all in it.
     """
     (x, y, _, _), full = window(scene)
     aspect = scene.render.pixel_aspect_x, scene.render.pixel_aspect_y
-    return camera_at(evaluated.matrix_world, evaluated, depsgraph, (x, y), full, aspect)
+    layer = scene.view_layers[layer] if layer else next(each for each in scene.view_layers if each.use)
+    return camera_at(evaluated.matrix_world, evaluated, depsgraph, (x, y), full, aspect, sampling.middle(scene, layer))
 
 
-def camera_at(matrix, lens, depsgraph, corner, full, aspect):
+def camera_at(matrix, lens, depsgraph, corner, full, aspect, middle=(0.0, 0.0)):
     """light.Camera at `matrix` with the lens of the camera object `lens`, for the part of a frame of `full` pixels (width,
-    height) that begins at `corner`."""
+    height) that begins at `corner`. middle: where in its pixels the depth was sampled, as sampling.py has it."""
     (x, y), (width, height) = corner, full
     projection = np.array(lens.calc_matrix_camera(
         depsgraph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1]))
@@ -191,7 +193,7 @@ def camera_at(matrix, lens, depsgraph, corner, full, aspect):
     to_world = axes / np.linalg.norm(axes, axis=0)  # Blender renders as if a scaled camera were not
     return light.Camera(
         rotation=np.linalg.inv(to_world), scale=2 / size / focus,
-        offset=(2 * np.array([x, y]) / size - 1 + shift) / focus, orthographic=orthographic,
+        offset=(2 * (np.array([x, y]) + middle) / size - 1 + shift) / focus, orthographic=orthographic,
         position=np.array(matrix.translation, float))
 
 

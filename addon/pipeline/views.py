@@ -19,7 +19,7 @@ from mathutils import Matrix
 
 from .. import light
 from ..translations import say
-from . import nodes, passes, placement
+from . import nodes, passes, placement, sampling
 from .nodes import MARK
 from .status import Problem
 
@@ -237,7 +237,8 @@ def camera(view, depsgraph, scene):
     it, so that no depsgraph need have heard of it."""
     place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
     (x, y, _, _), full = passes.window(scene)
-    return passes.camera_at(place, view.camera, depsgraph, (x, y), full, (1.0, 1.0))
+    return passes.camera_at(place, view.camera, depsgraph, (x, y), full, (1.0, 1.0),
+                            sampling.middle(view, view.view_layers[0]))
 
 
 @dataclass(frozen=True, eq=False)
