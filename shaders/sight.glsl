@@ -5,7 +5,8 @@
 #define FREE_TOLERANCE 1.0005 // of the farthest depth in a texel: so far behind it still counts as seen
 #define THICKNESS 0.03        // of the way: so thick is what no view looks behind
 #define BISECTIONS 4          // of a step in which a way goes behind something or comes out
-#define CONTINUOUS 0.25       // of the change in the gap over that step, that may be left after these
+#define CONTINUOUS 0.3        // of the change in the gap over that step, that may be left after these
+#define SLOPE 2.0             // of the step: more change is no surface's that it passes through, but from edge to edge of others
 
 // Planar depth of what the view shows there; 0 outside its frame and behind it.
 float depth_at(int view, vec3 projected)
@@ -30,11 +31,11 @@ float gap_at(int view, vec4 projected)
 }
 
 // A way that is seen at one end of a step and hidden at the other: does it pass through the surface, or behind the edge of
-// something nearer? Then the gap jumps, and halving the step does not make the jump smaller.
-bool passes_through(int view, vec4 start, vec4 path, float low, float high)
+// something nearer? Then the gap jumps, and halving the step does not make the jump smaller. length: of the step, m.
+bool passes_through(int view, vec4 start, vec4 path, float low, float high, float length)
 {
   float gap_low = gap_at(view, start + path * low), gap_high = gap_at(view, start + path * high);
-  float whole = abs(gap_low - gap_high);
+  float whole = min(abs(gap_low - gap_high), SLOPE * length);
   for (int k = 0; k < BISECTIONS; k++) {
     float middle = 0.5 * (low + high), gap = gap_at(view, start + path * middle);
     bool before = (gap > 0.0) == (gap_low > 0.0);
@@ -56,7 +57,7 @@ bool is_blocked(vec3 from, vec3 to, float jitter)
   int least = int(ceil(MARGIN * float(steps) - jitter)), most = int(floor((1.0 - MARGIN) * float(steps) - jitter));
   uint counted = (most >= 31 ? 0xFFFFFFFFu : (1u << (most + 1)) - 1u) & ~((1u << max(least, 0)) - 1u);
   uint is_free = 0u, is_within = 0u;
-  float thickness = THICKNESS * distance(from, to), each = 1.0 / float(max(steps, 1));
+  float length = distance(from, to), each = 1.0 / float(max(steps, 1));
   for (uint left = steps > 0 ? all_views() : 0u; left != 0u; left &= left - 1u) {
     int view = findLSB(left);
     vec4 start = projection_of(view, from), path = projection_of(view, to) - start;
@@ -67,13 +68,13 @@ bool is_blocked(vec3 from, vec3 to, float jitter)
       float gap = gap_at(view, place);
       seen |= uint(shown && gap > 0.0) << k;
       hidden |= uint(shown && gap <= 0.0) << k;
-      is_within |= uint(shown && gap <= 0.0 && gap > -thickness) << k;
+      is_within |= uint(shown && gap <= 0.0 && gap > -THICKNESS * length) << k;
     }
     is_free |= seen;
     uint turns = ((seen & (hidden >> 1)) | (hidden & (seen >> 1))) & counted & (counted >> 1);
     for (; turns != 0u; turns &= turns - 1u) {
       float low = (float(findLSB(turns)) + jitter) * each;
-      if (passes_through(view, start, path, low, low + each)) {
+      if (passes_through(view, start, path, low, low + each, length * each)) {
         return true;
       }
     }

@@ -18,7 +18,8 @@ MARGIN = 0.01
 FREE_TOLERANCE = 1.0005
 THICKNESS = 0.03
 BISECTIONS = 4
-CONTINUOUS = 0.25
+CONTINUOUS = 0.3
+SLOPE = 2.0
 STEEPEST = 1.1
 DEPTH_TOLERANCE = 0.02
 SLOPE_TOLERANCE = 2.0
@@ -177,7 +178,7 @@ def passes_through(eye, start, path, low, high):
     """(n,) bool: ways that are seen at one end of a step and hidden at the other go through a surface, and not behind the edge
     of something nearer, where the gap jumps."""
     gap_low, gap_high = (gap_at(eye, start + path * share[:, None])[1] for share in (low, high))
-    whole = np.abs(gap_low - gap_high)
+    whole = np.minimum(np.abs(gap_low - gap_high), SLOPE * np.linalg.norm(path, axis=-1) * (high - low))
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
         gap = gap_at(eye, start + path * middle[:, None])[1]
