@@ -16,6 +16,7 @@ class Picture:
         relight.forget(scene.session_uid)  # its file is written again
         self._frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
         self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
+        self._covered = self._sky if scene.afterlight.use_world_shadow else 0.0
 
     def receivers(self, count, rng):
         """(places, normals, albedo) of `count` pixels spread over the picture."""
@@ -46,5 +47,6 @@ class Picture:
                                  (emission, self._frame.emission)):
                 shown = np.nan_to_num(np.mean([axis[row, column] for axis in known], 0), posinf=0.0)
                 guess[seen] = np.clip(shown[seen], 0, None)
-            return direct, albedo, emission
+            # What stands before the world takes its light away, and must be seen as much as what sends some.
+            return direct, albedo, emission + self._covered
         return radiance
