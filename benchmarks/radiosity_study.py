@@ -175,6 +175,13 @@ DOOR = Room("door", box((-3, 3), (-1.5, 1.5), (0, 2.4)),
 ROOMS = SOLIDS, WALL, DOOR
 
 
+# Two rows of pillars, seen along them: for slope() alone.
+PILLARS = Room("pillars", ((-1.0, -6.0, -1.0), (1.0, 6.0, 1.0)),
+               tuple(((x - 0.1, y - 0.1, -1.0), (x + 0.1, y + 0.1, 1.0)) for x in (-0.5, 0.5) for y in np.arange(-5, 5.1, 1.25)),
+               (0.0, 0.0, 0.8), (((0.05, -5.8, 0.1), (0, 1, 0)), ((-0.4, 5.8, 0.3), (0.7, -0.7, 0)), ((0.4, 5.7, -0.2), (-0.7, -0.7, 0)),
+                                 ((-0.8, -5.7, 0), (0.7, 0.7, 0)), ((0.8, -5.6, 0.5), (-0.7, 0.7, -0.1))), 0.2)
+
+
 @dataclass
 class Case:
     room: Room
@@ -321,6 +328,16 @@ def ways(cases):
     views_64.THICKNESS, views_64.CONTINUOUS = usual
 
 
+def slope(cases):
+    """As ways(), for the most that the gap to a surface may change over a step."""
+    cases, usual = [*cases, Case(PILLARS, cases[0].light)], views_64.SLOPE
+    print("\n| `SLOPE` | " + " | ".join(f"{case.room.name}: free ways blocked, hidden ways free" for case in cases) + " |\n"
+          + "|---" * (len(cases) + 1) + "|")
+    for views_64.SLOPE in (0.5, 1.0, 2.0, 4.0, 8.0, np.inf):
+        print(f"| {views_64.SLOPE} | " + " | ".join("{:.1%}, {:.1%}".format(*misjudged(case, 24)) for case in cases) + " |", flush=True)
+    views_64.SLOPE = usual
+
+
 def misjudged(case, steps, count=20_000):
     """(share of the free ways taken for blocked, share of the hidden ones taken for free)"""
     rng = np.random.default_rng(1)
@@ -343,7 +360,7 @@ TABLES = {
     "thickness": constant("THICKNESS", (0.0, 0.01, 0.03, 0.1, 1.0)), "continuous": constant("CONTINUOUS", (0.1, 0.25, 0.5, 1.0)),
     "near": constant("NEAR_SHARE", (0, 2, 4, 8)),
     "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
-    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "setup": setup,
+    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)), "ways": ways, "slope": slope, "setup": setup,
     "seeds": seeds, "costs": costs}
 
 
