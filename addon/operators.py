@@ -2,6 +2,7 @@
 """The buttons: what mends a scene, presets, and settings from scene to scene."""
 
 import webbrowser
+from pathlib import Path
 
 import bpy
 from bl_operators.presets import AddPresetBase
@@ -125,6 +126,35 @@ class AFTERLIGHT_OT_help(Operator):
         return {"FINISHED"}
 
 
+# Presets that come with the add-on. The numbers are the means of docs/accuracy.md, of light and of frames.
+PRESETS = Path(__file__).resolve().parent / "presets" / "afterlight"
+TOOLTIPS = {
+    "draft": lambda: say("DRAFT"),
+    "paper": lambda: say("PAPER"),
+    "production": lambda: say("PRODUCTION"),
+    "reference": lambda: say("REFERENCE"),
+}
+
+
+class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
+    """As Blender loads presets, with a tooltip for each that comes with the add-on."""
+
+    bl_idname = "afterlight.preset"
+    bl_label = "Load Indirect Light Preset"
+    bl_description = "Set everything in this panel but Strength and Seed as the preset has it"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    filepath: StringProperty(name="File", subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, _context, properties):
+        path = Path(properties.filepath)
+        return TOOLTIPS[path.stem]() if path.parent == PRESETS and path.stem in TOOLTIPS else say(cls.bl_description)
+
+    def execute(self, _context):
+        return bpy.ops.script.execute_preset(filepath=self.filepath, menu_idname="AFTERLIGHT_PT_presets")
+
+
 class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
     bl_idname = "afterlight.preset_add"
     bl_label = "Add Indirect Light Preset"
@@ -163,6 +193,6 @@ def _animated(scene):
 
 
 CLASSES = (AFTERLIGHT_OT_mend, AFTERLIGHT_OT_repair, AFTERLIGHT_OT_copy_settings, AFTERLIGHT_OT_reset,
-           AFTERLIGHT_OT_help, AFTERLIGHT_OT_preset_add)
+           AFTERLIGHT_OT_help, AFTERLIGHT_OT_preset, AFTERLIGHT_OT_preset_add)
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -20,7 +20,7 @@ FOLDER = str(Path(__file__).parent)
 class AFTERLIGHT_PT_presets(PresetPanel, Panel):
     bl_label = "Indirect Light Presets"
     preset_subdir = "afterlight"
-    preset_operator = "script.execute_preset"
+    preset_operator = "afterlight.preset"
     preset_add_operator = "afterlight.preset_add"
 
 

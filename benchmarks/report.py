@@ -8,8 +8,10 @@ from statistics import median
 from typing import NamedTuple
 
 GPU_STAGES = ("upload", "pyramid", "gather", "upsample", "read_back")
+VIEWS_STAGES = ("views", "bounces", "gather", "upsample", "read_back")  # the same of Radiosity
 WHOLE_BOUND = 1.0            # Afterlight's seconds / those that EEVEE's ray tracing adds to a frame
 GPU_BOUND = 0.1              # the same for the part on the GPU
+SAMPLES_BOUNDS = {"draft": 1, "production": 6}  # samples of EEVEE that the stages on the GPU may take the time of
 MEMORY_BOUNDS = {"Paper": 700, "Radiosity": 1500}  # MB above EEVEE alone, by method
 CONSTANT_COST = "## Constant cost"  # the page's last part, by benchmarks.constant_cost
 
@@ -68,6 +70,12 @@ class Measured:
         return max(median(self.sums), median(added(self.plain, self.lit)))
 
     @property
+    def sample(self):
+        """Seconds of one more sample of EEVEE."""
+        first, all_of_them = (median(frame.wall for frame in frames) for frames in (self.plain, self.untraced))
+        return (all_of_them - first) / (self.samples - 1)
+
+    @property
     def ray_tracing(self):
         """Seconds that EEVEE's ray tracing adds to a frame."""
         return median(added(self.untraced, self.traced))
@@ -96,6 +104,11 @@ def verdicts(measured):
         found.append((f"{what} takes {seconds:.2f} s, {ratio:.3f} of the {tracing:.2f} s that EEVEE's ray tracing adds "
                       f"to {measured.samples} samples. Promised: less than {bound:g}", ratio < bound))
     for name, preset in measured.presets.items():
+        if preset.method == "Radiosity" and name in SAMPLES_BOUNDS:
+            seconds, bound = sum(preset.stages[stage] for stage in VIEWS_STAGES), SAMPLES_BOUNDS[name]
+            samples = seconds / measured.sample if measured.sample > 0 else float("inf")
+            found.append((f"{name.title()}'s part on the GPU, all views and bounces, takes {seconds:.2f} s, as {samples:.2f} samples of "
+                          f"EEVEE do. Promised: at most {bound}", samples <= bound))
         more, bound = measured.memory[name] - measured.memory["plain"], MEMORY_BOUNDS[preset.method]
         found.append((f"{name.title()} needs {more:.0f} MB more than EEVEE alone at {_size(measured.memory_size)}. "
                       f"Promised: at most {bound}", more <= bound))

@@ -83,7 +83,7 @@ def test_search_finds_what_the_menus_hold(scene, addon):
                 found.add(arguments[0])
     everything = {f"afterlight.{name}" for name in dir(bpy.ops.afterlight)}
     # With a button of their own beside what they are for.
-    internal = {f"afterlight.{name}" for name in ("mend", "preset_add", "view_add", "view_remove")}
+    internal = {f"afterlight.{name}" for name in ("mend", "preset", "preset_add", "view_add", "view_remove")}
     assert found >= everything - internal
 
 
@@ -110,13 +110,32 @@ def test_presets_are_added_and_removed_as_blenders_own(scene, addon):
     path = Path(bpy.utils.preset_find("My_Shot", "afterlight"))
     assert path.is_relative_to(bpy.utils.user_resource("SCRIPTS")), "not in the add-on's own folder"
     assert bpy.ops.afterlight.preset_add(name="My Shot") == {"CANCELLED"}, "the name is taken"
-    bpy.ops.script.execute_preset(filepath=shipped, menu_idname="AFTERLIGHT_PT_presets")
+    bpy.ops.afterlight.preset(filepath=shipped)
     assert quality() == ("RADIOSITY", "QUARTER", 123, 21, 8, 4)
-    bpy.ops.script.execute_preset(filepath=str(path), menu_idname="AFTERLIGHT_PT_presets")
+    bpy.ops.afterlight.preset(filepath=str(path))
     assert quality() == mine and settings.strength == pytest.approx(0.3)
     assert menu.bl_label == "My Shot"
     assert bpy.ops.afterlight.preset_add(name="My Shot", remove_name=True) == {"FINISHED"} and not path.exists()
     assert bpy.ops.afterlight.preset_add(name="draft", remove_name=True) == {"CANCELLED"} and Path(shipped).exists()
+
+
+def test_each_shipped_preset_has_a_tooltip_of_its_own(scene, addon):
+    """What the mouse shows over the entries of the menu: one of ours as it is drawn, and a user's."""
+    operators = addon.operators
+    shipped = {path.stem for path in operators.PRESETS.glob("*.py")}
+    assert shipped == set(operators.TOOLTIPS)
+
+    class Entry:
+        filepath = ""
+
+    texts = []
+    for name in sorted(shipped):
+        Entry.filepath = bpy.utils.preset_find(name, "afterlight")
+        texts.append(operators.AFTERLIGHT_OT_preset.description(bpy.context, Entry))
+    Entry.filepath = "/somewhere/draft.py"
+    texts.append(operators.AFTERLIGHT_OT_preset.description(bpy.context, Entry))
+    assert len(set(texts)) == len(texts) and texts[-1] == operators.AFTERLIGHT_OT_preset.bl_description
+    assert addon.panel.AFTERLIGHT_PT_presets.preset_operator == "afterlight.preset"
 
 
 # Keyframes and drivers

@@ -2,7 +2,9 @@
 """The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a timer, and
 how long of it were calls of ours.
 
-    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [opengl] [vulkan] [paper] [radiosity] [WIDTHxHEIGHT ...]"""
+    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [again] [opengl] [vulkan] [paper] [radiosity] [WIDTHxHEIGHT ...]
+
+again: with the shaders that the driver has kept since the last time, as on a computer that has rendered before."""
 
 import shutil
 import sys
@@ -73,8 +75,14 @@ def main():
     sizes = [tuple(map(int, word.split("x"))) for word in sys.argv[1:] if word[0].isdigit()] or [(640, 360), (1280, 720)]
     for backend in backends:
         folder = ROOT / "build" / "stalls" / backend
+        kept = ROOT / "build" / "stalls" / f"{backend}.cache"
+        if "again" not in sys.argv:
+            shutil.rmtree(kept, ignore_errors=True)
         shutil.rmtree(folder, ignore_errors=True)
-        window = Window(Computer(folder, backend))
+        computer = Computer(folder, backend)
+        kept.mkdir(parents=True, exist_ok=True)
+        (folder / ".cache").symlink_to(kept)
+        window = Window(computer)
         try:
             steps.install(window, extension.package())
             steps.new_box(window)
