@@ -469,6 +469,26 @@ def test_a_view_that_fails_leaves_the_others(scene, views, afterlight, seen, tmp
     assert status.warnings(scene) == ["A view could not be used: The disk is full"]
 
 
+@pytest.mark.parametrize("covers", [True, False])
+def test_what_covers_the_world_is_to_be_seen_as_well(scene, placing, monkeypatch, tmp_path, covers):
+    """The box sends nothing by itself: all that its surfaces weigh beyond what they reflect is the world's light behind them."""
+    sent, bounces = [], placing.bounces
+
+    def spy(places, normals, albedo, cast, radiance, rng, most):
+        def and_keep(*hits):
+            found = radiance(*hits)
+            sent.append(found[2])
+            return found
+        return bounces(places, normals, albedo, cast, and_keep, rng, most)
+
+    monkeypatch.setattr(placing, "bounces", spy)
+    scene.world = bpy.data.worlds.new("Bright")
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.6, 0.6, 0.6, 1)
+    scene.afterlight.views, scene.afterlight.use_world_shadow, scene.afterlight.enabled = "AUTOMATIC", covers, True
+    render(scene, tmp_path / "lit.exr")
+    assert np.concatenate(sent) == pytest.approx(0.6 if covers else 0.0, abs=1e-6)
+
+
 def test_a_scene_with_nothing_to_hit_is_rendered_all_the_same(scene, afterlight, tmp_path):
     corner(scene)
     for thing in [thing for thing in scene.objects if thing.type == "MESH"]:
