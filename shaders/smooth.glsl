@@ -2,7 +2,7 @@
 // Smooth: the noise of the draws out of the base's irradiance, by a mean over the texels around that lie on the same
 // surface. No noise may take away more of the world's light than there is.
 
-#define SMOOTH_RADIUS 2
+#define SMOOTH_RADIUS 3
 
 void main()
 {

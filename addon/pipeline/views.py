@@ -27,7 +27,7 @@ SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
 SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
 MOST = 9
 PLACED = "placed"          # custom property of the scout's scene
-FIELD = radians(100)       # of an automatic view, along the longer side of the frame
+FIELD = radians(110)       # of an automatic view, along the longer side of the frame
 SAMPLES = 1                # EEVEE's; the pixels are averaged down afterwards
 
 # What of the lit scene decides how its surfaces look and where they are. EEVEE's own settings are mirrored all.
