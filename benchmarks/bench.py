@@ -59,8 +59,7 @@ def render(scene, samples=1):
 def use_preset(name, afterlight):
     """Run a preset for the scene in context, as choosing it in the panel does."""
     import bpy
-    path = Path(afterlight.__file__).parent / "addon" / "presets" / "afterlight" / f"{name}.py"
-    bpy.ops.script.execute_preset(filepath=str(path), menu_idname="AFTERLIGHT_PT_presets")
+    bpy.ops.afterlight.preset(filepath=str(afterlight.addon.operators.PRESETS / f"{name}.py"))
 
 
 def measure_own(scene, stages_of):

@@ -116,8 +116,7 @@ def nodes_of_one_engine():
 
 def all_of(afterlight, bounces, presets=()):
     """The candidates, plain EEVEE first. presets: names of those to take; all that there are without."""
-    folder = Path(afterlight.__file__).parent / "addon" / "presets" / "afterlight"
-    named = sorted(path.stem for path in folder.glob("*.py"))
+    named = sorted(path.stem for path in afterlight.addon.operators.PRESETS.glob("*.py"))
     return [
         Candidate("EEVEE", "EEVEE", nullcontext, lambda scene, final, plain: plain.world),
         Candidate("EEVEE ray tracing, default", "EEVEE ray tracing", lambda scene: traced(scene, {}), traced_diffuse),

@@ -175,11 +175,7 @@ DOOR = Room("door", box((-3, 3), (-1.5, 1.5), (0, 2.4)),
 ROOMS = SOLIDS, WALL, DOOR
 
 
-# Two rows of pillars, seen along them: for slope() alone.
-PILLARS = Room("pillars", ((-1.0, -6.0, -1.0), (1.0, 6.0, 1.0)),
-               tuple(((x - 0.1, y - 0.1, -1.0), (x + 0.1, y + 0.1, 1.0)) for x in (-0.5, 0.5) for y in np.arange(-5, 5.1, 1.25)),
-               (0.0, 0.0, 0.8), (((0.05, -5.8, 0.1), (0, 1, 0)), ((-0.4, 5.8, 0.3), (0.7, -0.7, 0)), ((0.4, 5.7, -0.2), (-0.7, -0.7, 0)),
-                                 ((-0.8, -5.7, 0), (0.7, 0.7, 0)), ((0.8, -5.6, 0.5), (-0.7, 0.7, -0.1))), 0.2)
+PILLARS = Room("pillars", rooms.HALL, rooms.PILLARS, (0.0, 0.0, 0.8), rooms.ALONG, 0.2)  # for slope() alone
 
 
 @dataclass

@@ -356,13 +356,9 @@ def halved(light, wall):
 
 
 def colonnade(light, size=(128, 72)):
-    """A hall with two rows of pillars, seen along them: places behind one pillar and before another are a small step apart."""
-    room = ((-1.0, -6.0, -1.0), (1.0, 6.0, 1.0))
-    pillars = [((x - 0.1, y - 0.1, -1), (x + 0.1, y + 0.1, 1)) for x in (-0.5, 0.5) for y in np.arange(-5, 5.1, 1.25)]
-    cameras = [rooms.camera_at(light, eye, towards, size, fov=np.radians(100)) for eye, towards in (
-        ((0.05, -5.8, 0.1), (0, 1, 0)), ((-0.4, 5.8, 0.3), (0.7, -0.7, 0)), ((0.4, 5.7, -0.2), (-0.7, -0.7, 0)),
-        ((-0.8, -5.7, 0), (0.7, 0.7, 0)), ((0.8, -5.6, 0.5), (-0.7, 0.7, -0.1)))]
-    return [rooms.view_of(light, camera, size, room=room, solids=pillars) for camera in cameras], pillars
+    """A hall with two rows of pillars, seen along them."""
+    cameras = [rooms.camera_at(light, *eye, size, fov=np.radians(100)) for eye in rooms.ALONG]
+    return [rooms.view_of(light, camera, size, room=rooms.HALL, solids=rooms.PILLARS) for camera in cameras], rooms.PILLARS
 
 
 @pytest.mark.parametrize("made, most_blocked, most_free", [

@@ -3,9 +3,8 @@
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
-from scenes import box, matt, put, wall
+from scenes import box, matt, wall
 
 
 @pytest.fixture
@@ -18,8 +17,7 @@ def scene(fresh):
     scene = box(fresh)
     scene.camera.location, scene.camera.rotation_euler = (0.3, -1.8, 0.2), (1.4, 0.1, 0.3)  # no symmetry that could hide a sign
     wall(matt("Slope", (0.5, 0.5, 0.5)), (-1.2, 1.2, -1.2), (30, 20, 0))
-    layer = scene.view_layers[0]
-    layer.use_pass_position = layer.use_pass_z = layer.use_pass_normal = True
+    scene.view_layers[0].use_pass_position = True
     return scene
 
 
@@ -30,17 +28,15 @@ def missed(passes, scene):
         setattr(scene.view_layers[0], switch, True)
     bpy.ops.render.render()
     path = passes.save(scene)
-    channels = {name: channel.pixels for part in OpenEXR.File(path, separate_channels=True).parts
-                for name, channel in part.channels.items()}
-    layer = scene.view_layers[0].name
-    frame = passes.load(path, layer, passes.window(scene)[0])
+    layer, (part, full) = scene.view_layers[0].name, passes.window(scene)
+    frame, cut = passes.load(path, layer, part), passes.read(path, part)
     passes.discard(path)
-    true = np.stack([channels[f"{layer}.Position.{axis}"].ravel() for axis in "XYZ"], -1).astype(float)
+    true = np.stack([cut(f"{layer}.Position.{axis}").ravel() for axis in "XYZ"], -1).astype(float)
     flat = np.flatnonzero((frame.depth < 1e6).ravel())
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    seen = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
-    plain = passes.camera_at(scene.camera.matrix_world, scene.camera.evaluated_get(depsgraph), depsgraph, passes.window(scene)[0][:2],
-                             passes.window(scene)[1], (1.0, 1.0))
+    evaluated = scene.camera.evaluated_get(depsgraph)
+    seen = passes.camera(evaluated, depsgraph, scene)
+    plain = passes.camera_at(evaluated.matrix_world, evaluated, depsgraph, part[:2], full, (1.0, 1.0))
     return [np.mean(np.linalg.norm(passes.positions(frame, camera, flat) - true[flat], axis=1) / frame.depth.ravel()[flat])
             for camera in (seen, plain)]
 

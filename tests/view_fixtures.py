@@ -6,6 +6,12 @@ import numpy as np
 AXES = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 EYE = (0.1, 0.05, -0.1)    # of the six cameras, beside the middle of the box, so that nothing is symmetric by accident
 ROOM = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+# A hall with two rows of pillars, and eyes (place, towards) that see them along: places behind one pillar and before another are
+# a small step apart.
+HALL = ((-1.0, -6.0, -1.0), (1.0, 6.0, 1.0))
+PILLARS = tuple(((x - 0.1, y - 0.1, -1.0), (x + 0.1, y + 0.1, 1.0)) for x in (-0.5, 0.5) for y in np.arange(-5, 5.1, 1.25))
+ALONG = (((0.05, -5.8, 0.1), (0, 1, 0)), ((-0.4, 5.8, 0.3), (0.7, -0.7, 0)), ((0.4, 5.7, -0.2), (-0.7, -0.7, 0)),
+         ((-0.8, -5.7, 0), (0.7, 0.7, 0)), ((0.8, -5.6, 0.5), (-0.7, 0.7, -0.1)))
 
 
 def look(towards, up=(0, 0, 1)):

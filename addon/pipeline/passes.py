@@ -166,6 +166,11 @@ def window(scene):
     return (x, y, pixel(render.border_max_x, full[0]) - x, pixel(render.border_max_y, full[1]) - y), full
 
 
+def first_layer(scene):
+    """The first view layer that is rendered."""
+    return next(layer for layer in scene.view_layers if layer.use)
+
+
 def camera(evaluated, depsgraph, scene, layer=None):
     """light.Camera of an evaluated camera object, for the part of `scene`'s frame that is rendered. layer: name of the view layer,
     by default the first that is rendered.
@@ -174,7 +179,7 @@ def camera(evaluated, depsgraph, scene, layer=None):
     """
     (x, y, _, _), full = window(scene)
     aspect = scene.render.pixel_aspect_x, scene.render.pixel_aspect_y
-    layer = scene.view_layers[layer] if layer else next(each for each in scene.view_layers if each.use)
+    layer = scene.view_layers[layer] if layer else first_layer(scene)
     return camera_at(evaluated.matrix_world, evaluated, depsgraph, (x, y), full, aspect, sampling.middle(scene, layer))
 
 

@@ -12,7 +12,7 @@ class Picture:
     """The main view as EEVEE has just finished it, by the first view layer that is rendered."""
 
     def __init__(self, scene, camera):
-        layer = next(layer for layer in scene.view_layers if layer.use)
+        layer = passes.first_layer(scene)
         relight.forget(scene.session_uid)  # its file is written again
         self._frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
         self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
