@@ -296,6 +296,18 @@ def test_views_taken_back_and_set_anew_see_more(placing, monkeypatch):
     assert min(gains) > -0.001 and max(gains) > 0.003, gains
 
 
+def test_what_is_seen_along_it_is_not_seen(placing):
+    """The first bounce lost up to 12 % of a white box's light where a view stood a hand's breadth off one of its walls."""
+    low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
+    cast = room((low, high))
+    light = placing.bounces(*floor(low, high), cast, evenly, np.random.default_rng(0))
+    low_down = placing.visible(np.array((0, 0, 0.02)), light, cast)
+    near, floor_places = np.linalg.norm(light.places[:, :2], axis=1) < 0.15, light.places[:, 2] < 1e-6
+    assert low_down[floor_places & near].any()
+    assert not low_down[floor_places & ~near & (np.linalg.norm(light.places[:, :2], axis=1) > 0.25)].any()
+    assert low_down[~floor_places].mean() > 0.9
+
+
 def test_views_look_where_the_light_comes_from(placing):
     """Only one wall is lit: the first view must look at it."""
     low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))

@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, passes, relight, status, turns, views, wiring, world
+from . import checks, passes, relight, status, still, turns, views, wiring, world
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -146,7 +146,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
             if self._progress("Saving passes", 0.0):
                 raise light.Cancelled
-            relight.forget(shot.scene.session_uid)
+            relight.forget(shot.scene.session_uid, but=still.files())
             self.file = passes.save_once(shot.scene)
             self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)

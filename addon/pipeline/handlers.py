@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, leftovers, nodes, passes, relight, status, turns, views, wiring
+from . import checks, leftovers, nodes, passes, relight, status, still, turns, views, wiring
 from .engine import AfterlightEngine
 
 
@@ -42,6 +42,7 @@ def before_render(scene, *_):
 def _begin(scene):
     status.begin(scene)
     views.reset()
+    still.begin()
     passes.discard_early()
     views.begin(scene)
     if bpy.app.background and scene.library is None:
@@ -64,6 +65,7 @@ def after_render(*_):
 def _end():
     """Undo what views and _mute() did to the file."""
     views.reset()
+    still.begin()
     passes.discard_early()
     while _muted:
         tree, node = _muted.pop()

@@ -5,7 +5,7 @@ send some."""
 import numpy as np
 
 from .. import light
-from . import materials, passes, placement, rays, relight
+from . import materials, passes, placement, rays, relight, still
 
 
 class Picture:
@@ -13,7 +13,7 @@ class Picture:
 
     def __init__(self, scene, camera):
         layer = passes.first_layer(scene)
-        relight.forget(scene.session_uid)  # its file is written again
+        relight.forget(scene.session_uid, but=still.files())  # its own file is written again
         self._frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
         self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
         self._covered = self._sky if scene.afterlight.use_world_shadow else 0.0

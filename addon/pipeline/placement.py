@@ -25,6 +25,7 @@ PLACES = 200               # on them, that a view may have
 ROUNDS = 3                 # of taking views back, at most
 LEAST_GAIN = 0.005         # of all weight, that a further view must newly see
 CLEARANCE = 0.01           # of the scene's size, between a view and any surface
+LEAST_COSINE = 0.1         # between a surface and a view that sees it: at less, a pixel is too much of the surface
 DIM = 0.03                 # of the mean light, that surfaces in the dark count for: the paths end too early for them
 FALL = 0.03                # of all weight: views that see less than when they were placed, by more than that, move
 
@@ -178,11 +179,11 @@ def looking(position, direction):
 
 
 def visible(position, light, cast):
-    """(N,) bool: what can be seen from a place, in any direction. position: (3,), or (N, 3), one for each."""
+    """(N,) bool: what can be seen well from a place, in any direction. position: (3,), or (N, 3), one for each."""
     to = light.places - position
     far = np.linalg.norm(to, axis=1)
     far = np.where(far > 0, far, 1.0)
-    found = (np.sum(to * light.normals, 1) < 0) & (far > 1e-4 * light.size)
+    found = (np.sum(to * light.normals, 1) < -LEAST_COSINE * far) & (far > 1e-4 * light.size)
     to, limit = to[found] / far[found, None], far[found] * (1 - 3e-3) - 1e-4 * light.size
     distance, _, _ = cast(np.broadcast_to(position, light.places.shape)[found], to, limit, nearest=False)
     found[found] = ~np.isfinite(distance)

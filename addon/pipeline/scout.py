@@ -68,6 +68,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
             shares = self._score(scene, depsgraph, light, seen, geometry.cast)
         else:
             shares = self._choose(scene, depsgraph, light, seen, geometry.cast, look, rng)
+        turns.run(lambda: views.leave_out_still(scene, depsgraph))
         status.covered(scene, shares, time.perf_counter() - start)
 
     def _pose_by_hand(self, scene, depsgraph):

@@ -19,7 +19,7 @@ from mathutils import Matrix
 
 from .. import light
 from ..translations import say
-from . import nodes, passes, placement, sampling
+from . import nodes, passes, placement, sampling, still
 from .nodes import MARK
 from .status import Problem
 
@@ -215,6 +215,7 @@ def keep_placed(scene, found):
 
 def prepare(scene):
     """The scout begins: no view is in the frame as yet, and all look as `scene` does."""
+    still.begin_frame()
     for view in scenes(scene):
         drop(view)
     mirror(scene)
@@ -230,6 +231,20 @@ def posed(scene):
     tree = scene.compositing_node_group
     shown = [node.scene for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and not node.mute]
     return [each for each in scenes(scene) if each in shown and each.view_layers[0].use]
+
+
+def leave_out_still(scene, depsgraph):
+    """Of the posed views, drop those that would see what they saw in the frame before."""
+    for view in posed(scene):
+        if still.recall(scene, depsgraph, view, _shown(view, scene)):
+            drop(view)
+
+
+def _shown(view, scene):
+    """All that decides what a view sees of a still scene."""
+    camera, data = view.camera, view.camera.data
+    return (passes.window(scene), camera.location[:], camera.rotation_quaternion[:], data.type,
+            *(getattr(data, name) for name in ("sensor_width", "ortho_scale", "shift_x", "shift_y", "clip_start", "clip_end")))
 
 
 def camera(view, depsgraph, scene):
@@ -257,9 +272,14 @@ class Saved:
 
 
 def save(scene, depsgraph, warn):
-    """[Saved] of the views that were rendered for this frame of `scene`. warn: called with a text where one fails."""
-    found = []
-    for view in posed(scene):
+    """[Saved] of the views of this frame of `scene`, rendered or known. warn: called with a text where one fails."""
+    found, rendered = [], posed(scene)
+    for view in scenes(scene):
+        if known := still.recalled(view):
+            found.append(known)
+            continue
+        if view not in rendered:
+            continue
         try:
             path = passes.save(view)
         except Problem as problem:
@@ -270,6 +290,9 @@ def save(scene, depsgraph, warn):
                 passes.discard(each.path)
             raise
         found.append(Saved(path, view.view_layers[0].name, passes.window(scene)[0], camera(view, depsgraph, scene)))
+        still.remember(view, _shown(view, scene), found[-1])
+    for path in still.forget_others(found):
+        passes.discard(path)
     return found
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import steps
 
-LIT = {}  # the picture by method and backend
+LIT = {}  # the picture by method and backend, and its file
 
 
 def test_install_and_find_the_panel(window, afterlight):
@@ -28,15 +28,21 @@ def test_picture_is_that_of_the_command_line(window, afterlight, method):
     assert window.value("bpy.context.scene.afterlight.report") == ""
     assert np.all(lit >= plain) and np.mean(lit) > 1.2 * np.mean(plain)
     assert np.array_equal(lit, steps.headless(window, f"lit_{method}"))
-    for (other_method, backend), other in LIT.items():
+    for (other_method, backend), (other, blend) in LIT.items():
         if other_method == method:
             print(f"{method}: largest difference to {backend}: {np.max(np.abs(lit - other)):.2g}")
             if method == "PAPER":  # EEVEE's colours are half floats: a step of theirs, where rounding falls otherwise
                 np.testing.assert_allclose(lit, other, rtol=0, atol=2**-11)
-            else:  # rounding decides here and there which emitter is drawn: other noise of the same light
-                assert abs(lit.mean() / other.mean() - 1) < 0.01
-                assert np.abs(lit - other).mean() < 0.05 * other.mean()
-    LIT[method, window.computer.backend] = lit
+                continue
+            # Rounding decides here and there which of two equally good places a view gets: 0.4 % of the light
+            assert abs(lit.mean() / other.mean() - 1) < 0.02
+            # and, where the views are those of the other's file, which emitter is drawn: other noise of the same light
+            same_views = steps.render_file(window.computer, blend, window.computer.folder / f"views_of_{backend}")
+            print(f"views of {backend}: {abs(same_views.mean() / other.mean() - 1):.2g} in the mean, "
+                  f"{np.abs(same_views - other).mean() / other.mean():.2g} a pixel")
+            assert abs(same_views.mean() / other.mean() - 1) < 0.005
+            assert np.abs(same_views - other).mean() < 0.05 * other.mean()
+    LIT[method, window.computer.backend] = lit, window.computer.folder / f"lit_{method}.blend"
 
 
 def test_undo_redo_save_reopen(window, afterlight):
