@@ -149,7 +149,7 @@ class Here:
 
 
 place = Here
-_written = None            # what the last dispatch wrote, where somebody will settle() it
+_written = None            # what was written last, by a dispatch or from here, where somebody will settle() it
 
 
 def on_gpu(function):
@@ -178,6 +178,7 @@ class Texture:
     @on_gpu
     def clear(self, format, value):
         self.handle.clear(format=format, value=value)
+        _to_settle(self)
 
 
 def parameters(**values) -> np.ndarray:
@@ -206,7 +207,7 @@ def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray |
             raise GpuUnavailable("The frame needs a texture of {} x {}, but this GPU's largest is {} x {}. Lower the "
                                  "render resolution", width, height, largest, largest)
         buffer = None if data is None else gpu.types.Buffer("FLOAT", data.size, data.ravel())
-        return Texture(gpu.types.GPUTexture((width, height), format=format, data=buffer))
+        made = Texture(gpu.types.GPUTexture((width, height), format=format, data=buffer))
     except SystemError as error:
         raise GpuUnavailable("Blender has no GPU here. In background mode it needs a graphics driver; on a machine "
                              "without a display, install Mesa's software driver") from error
@@ -215,6 +216,9 @@ def texture(width: int, height: int, format: str = "RGBA32F", data: np.ndarray |
             raise
         raise GpuUnavailable("The GPU has no memory for a texture of {} x {}. Use a coarser start resolution, or lower "
                              "the render resolution", width, height) from error
+    if data is not None:
+        _to_settle(made)
+    return made
 
 
 @cache
@@ -270,13 +274,18 @@ def dispatch(name: str, block: np.ndarray, textures: dict, groups: tuple[int, in
     # Blender's context remembers what was bound last by its address. Left bound and freed later, it would be taken
     # for whatever shader gets that address next, and the compositor then crashes in the driver.
     gpu.shader.unbind()
-    if place is not Here and not name.startswith("probe"):
-        global _written
-        _written = textures[made_of.writes]
+    if not name.startswith("probe"):
+        _to_settle(textures[made_of.writes])
+
+
+def _to_settle(target):
+    global _written
+    if place is not Here:
+        _written = target
 
 
 def settle() -> None:
-    """Wait for all that has been dispatched. Blender's windows have a GPU context each, and what one has not finished
+    """Wait for all that has been dispatched, sent and cleared. Blender's windows have a GPU context each, and what one has not finished
     another need not see: so `place` calls this before it lets go of its turn."""
     global _written
     target, _written = _written, None
