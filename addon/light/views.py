@@ -20,7 +20,7 @@ from .inputs import Draws, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
 DEPTHS_ACROSS = 320        # least texels along a depth map's longer side, and emitters along the main view's
-EMITTER, RECEIVER = 2, 8   # texels of the depth map along the side of another view's emitters, of any view's receivers
+EMITTER, RECEIVER = 1, 8   # texels of the depth map along the side of another view's emitters, of any view's receivers
 STEPS = 24                 # of the way to an emitter at which it is asked whether something stands there
 ENTRIES = 1 << 18          # of the table that emitters are drawn from
 BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts

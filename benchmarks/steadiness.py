@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How calm the indirect light is while the camera moves: what changes between frames beyond what Cycles' frames change.
+
+    .venv/bin/python -m benchmarks.steadiness [FILE.blend] [--frames 24] [--travel=-0.25,0,-0.25] [--samples 64] [--page FILE]
+
+The camera goes by `travel` (to its right, up and back, in parts of the picture's mean depth) in so many frames. For each way to
+render, the error against Cycles is taken in every frame, and its change to the next: an error that stays where it is does not
+flicker. Means over blocks of 8 x 8 pixels, over the mean of Cycles' indirect light: finer noise than that is Cycles' own.
+What is left of that is measured from two halves of its samples, and stands beside it.
+"""
+
+import argparse
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "sample_blends"))
+
+import session  # noqa: E402
+
+from . import candidates, references  # noqa: E402
+
+BLOCK = 8
+SIZE, EEVEE_SAMPLES, BOUNCES = (320, 180), 16, 4
+ANEW = "views placed anew"
+
+
+def blocks(picture):
+    """(H // 8, W // 8, 3): means over blocks of pixels."""
+    height, width = (side // BLOCK * BLOCK for side in picture.shape[:2])
+    return picture[:height, :width].reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3).mean((1, 3))
+
+
+def truth(scene, samples, frame):
+    """(mean, difference of the halves over 2): Cycles' indirect light, its noise."""
+    halves = []
+    for half in range(2):
+        seed = 2 * frame + half
+        found = references.render(scene, BOUNCES, samples, seed)["indirect"]
+        for alone in references.alone(scene):
+            found = found + references.render(scene, alone, samples, seed)["direct"]
+        halves.append(blocks(found))
+    return (halves[0] + halves[1]) / 2, (halves[0] - halves[1]) / 2
+
+
+def as_in_one_render(afterlight, way):
+    """A way of Afterlight's whose views stay from frame to frame; to untick it, as is done here, takes them away."""
+    views, known = afterlight.addon.pipeline.views, []
+
+    @contextmanager
+    def mode(scene):
+        with way.mode(scene):
+            if known and views.wanted(scene):
+                views.keep_placed(scene, known.pop())
+            yield
+            if views.wanted(scene):
+                known.append(views.placed(scene))
+    return candidates.Candidate(way.name, way.group, mode, way.bounced)
+
+
+def measure(path, frames, travel, samples, afterlight):
+    """{name: (frames, h, w, 3) of errors}, noise of the reference (frames, h, w, 3), mean of its light, {name: views}."""
+    scene = candidates.open_scene(path, SIZE, EEVEE_SAMPLES, afterlight)
+    ways = [as_in_one_render(afterlight, each) if each.group == "Afterlight" else each
+            for each in candidates.all_of(afterlight, BOUNCES, ["draft", "paper", "production"]) if each.group != "Cycles"]
+    anew = candidates.ticked(afterlight, "production")  # as on a farm, of a file that holds no views
+    anew.name += f", {ANEW}"
+    ways.append(anew)
+    views = afterlight.addon.pipeline.views
+    start, errors, noise, light, poses = scene.camera.matrix_world.copy(), {}, [], [], {}
+    depth = None
+    for frame in range(frames):
+        true, half = truth(scene, samples, frame)
+        light.append(true.mean())
+        noise.append(half)
+        _, final = candidates.written(scene)
+        plain = candidates.look(scene, final, afterlight)
+        if depth is None:
+            depth = float(np.mean(plain.passes.depth[plain.passes.depth < 1e9]))
+        for way in ways:
+            with way.mode(scene):
+                _, final = candidates.written(scene)
+                if scene.afterlight.enabled and scene.afterlight.report:
+                    sys.exit(scene.afterlight.report)
+                errors.setdefault(way.name, []).append(blocks(way.bounced(scene, final, plain)) - true)
+                known = views.placed(scene) if scene.afterlight.enabled and views.wanted(scene) else None
+                poses.setdefault(way.name, []).append(np.array(known.poses).ravel().tolist() if known else [])
+        print(f"frame {frame + 1} of {frames}", file=sys.stderr, flush=True)
+        matrix = start.copy()
+        step = (frame + 1) / max(frames - 1, 1) * depth * np.array(travel)
+        matrix.translation = start.translation + start.to_3x3() @ type(start.translation)(step)
+        scene.camera.matrix_world = matrix
+    return {name: np.array(each) for name, each in errors.items()}, np.array(noise), float(np.mean(light)), poses
+
+
+def table(errors, noise, light, poses):
+    """The rows of the page."""
+    rows = ["| way | error | change between frames, median | largest | views changed at frame | change there |",
+            "|---|---:|---:|---:|---|---:|"]
+    for name, each in errors.items():
+        change = np.abs(np.diff(each, axis=0)).mean((1, 2, 3)) / light
+        moved = [frame for frame in range(1, len(each)) if poses[name][frame] != poses[name][frame - 1]]
+        listed = "–" if not moved else "all" if len(moved) == len(each) - 1 else ", ".join(str(frame + 1) for frame in moved)
+        there = f"{max(change[frame - 1] for frame in moved):.4f}" if moved else "–"
+        rows.append(f"| {name} | {np.abs(each).mean() / light:.3f} | {np.median(change):.4f} | {change.max():.4f} | {listed} "
+                    f"| {there} |")
+    own = np.abs(np.diff(noise, axis=0)).mean((1, 2, 3)) / light
+    rows.append(f"| *Cycles' own noise in these* | {np.abs(noise).mean() / light:.3f} | {np.median(own):.4f} | {own.max():.4f} | | |")
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", nargs="?", type=Path, default=ROOT / "sample_blends" / "apartment.blend")
+    parser.add_argument("--frames", type=int, default=24)
+    parser.add_argument("--travel", default="-0.25,0,-0.25")
+    parser.add_argument("--samples", type=int, default=64, help="of each half of Cycles' frames; 64")
+    parser.add_argument("--page", type=Path)
+    wanted = parser.parse_args()
+    afterlight = session.enable_afterlight()
+    travel = [float(part) for part in wanted.travel.split(",")]
+    rows = table(*measure(wanted.file, wanted.frames, travel, wanted.samples, afterlight))
+    text = "\n".join([f"`{wanted.file.name}`, {wanted.frames} frames, travel {wanted.travel} of the mean depth, Cycles with "
+                      f"{2 * wanted.samples} samples:", "", *rows, ""])
+    print(text)
+    if wanted.page:
+        wanted.page.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
