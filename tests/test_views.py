@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from scenes import TREES, box, differences, layers_node, put, render, simple_tree, written_down
+from scenes import TREES, box, differences, layers_node, matt, put, render, simple_tree, wall, written_down
 
 
 @pytest.fixture
@@ -428,6 +428,36 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
     render(scene, tmp_path / "lit.exr")
     shares, _ = status.coverage(scene)
     assert shares[-1] > 0.95, "coverage had fallen, so the views moved"
+
+
+def pane(kind):
+    """Something a metre across in the way of a ray along y."""
+    if kind == "hair":
+        hair = bpy.data.hair_curves.new("Hair")
+        hair.add_curves([2] * 50)
+        hair.position_data.foreach_set("vector", np.random.default_rng(0).uniform(-0.5, 0.5, 300))
+        return put(hair, (0, 1, 0))
+    material = matt("Pane", (0.8, 0.8, 0.8))
+    tree = material.node_tree
+    if kind in {"glass", "transparent"}:
+        shader = tree.nodes.new("ShaderNodeBsdfGlass" if kind == "glass" else "ShaderNodeBsdfTransparent")
+        tree.links.new(shader.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    elif kind == "alpha":
+        tree.nodes["Principled BSDF"].inputs["Alpha"].default_value = 0.1
+    elif kind == "volume":
+        tree.links.clear()
+    return wall(material, (0, 1, 0), (90, 0, 0))
+
+
+@pytest.mark.parametrize("kind, stops", [("wall", True), ("glass", True), ("transparent", False), ("alpha", False),
+                                         ("volume", False), ("hair", False)])
+def test_what_stands_in_the_way_of_a_view(scene, afterlight, kind, stops):
+    """What EEVEE sees through does not hide the wall behind it, two metres from the middle."""
+    pane(kind)
+    bpy.context.view_layer.update()
+    geometry = afterlight.addon.pipeline.rays.Geometry(bpy.context.evaluated_depsgraph_get())
+    distance, _, _ = geometry.cast(np.zeros((1, 3)), np.array([(0.0, 1, 0)]), np.array([np.inf]))
+    assert abs(distance[0] - (1 if stops else 2)) < 1e-4
 
 
 def test_two_scenes_that_share_a_tree_do_not_render_each_others_views(scene, views, seen, tmp_path):

@@ -18,10 +18,10 @@ from itertools import product
 import numpy as np
 
 PATHS = 1500               # that tell how much of the light is seen
-CHOOSING_PATHS = 6000      # that places are chosen by. Light may come by few of them, through a door,
-CHOOSING_POINTS = 3000     # so these are taken from what they hit, as often as there is light
+CHOOSING_PATHS = 4000      # that places are chosen by. Light may come by few of them, through a door,
+CHOOSING_POINTS = 2000     # so these are taken from what they hit, as often as there is light
 DEPTH = 4                  # bounces of a path at most
-PLACES = 200               # on them, that a view may have
+PLACES = 150               # on them, that a view may have
 ROUNDS = 3                 # of taking views back, at most
 LEAST_GAIN = 0.005         # of all weight, that a further view must newly see
 CLEARANCE = 0.01           # of the scene's size, between a view and any surface
