@@ -26,6 +26,7 @@ PRESETS = ("draft", "paper", "production", "reference")
 OWN_FRAMES = 7               # for Afterlight's own time, at one EEVEE sample each: it does not depend on them
 MEMORY_SIZE = 1920, 1080
 MEMORY_FRAMES = 3
+MEMORY_VIEWS = 7          # of Radiosity: its default at most
 
 
 def open_scene(path, size, afterlight):
@@ -118,7 +119,7 @@ def measure_memory(path, names):
 
 def print_peak(path, case):
     """Render `path` in this process: by EEVEE alone ("plain"), with a compositor that only passes the picture on
-    ("compositor"), or lit by a preset. Prints the most memory that it has taken, in MB."""
+    ("compositor"), or lit by a preset, with as many views as automatic ones can be by default. Prints the most memory that it has taken, in MB."""
     afterlight = session.enable_afterlight()
     import bpy
     scene = open_scene(path, MEMORY_SIZE, afterlight)
@@ -130,6 +131,10 @@ def print_peak(path, case):
         tree.links.new(picture.outputs["Image"], output.inputs[0])
     elif case != "plain":
         use_preset(case, afterlight)
+        if scene.afterlight.method == "RADIOSITY":
+            scene.afterlight.views = "MANUAL"
+            for _ in range(MEMORY_VIEWS):
+                scene.afterlight.view_cameras.add().camera = scene.camera
         scene.afterlight.enabled = True
     for _ in range(MEMORY_FRAMES):
         render(scene)
