@@ -65,7 +65,7 @@ def measure(path, frames, travel, samples, afterlight):
     """{name: (frames, h, w, 3) of errors}, noise of the reference (frames, h, w, 3), mean of its light, {name: views}."""
     scene = candidates.open_scene(path, SIZE, EEVEE_SAMPLES, afterlight)
     ways = [as_in_one_render(afterlight, each) if each.group == "Afterlight" else each
-            for each in candidates.all_of(afterlight, BOUNCES, ["draft", "paper", "production"]) if each.group != "Cycles"]
+            for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"]) if each.group != "Cycles"]
     anew = candidates.ticked(afterlight, "production")  # as on a farm, of a file that holds no views
     anew.name += f", {ANEW}"
     ways.append(anew)
