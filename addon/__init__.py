@@ -2,11 +2,11 @@
 """What Blender sees of Afterlight, registered in the order in which the parts need one another."""
 
 from . import help_page, migration, operators, panel, settings, translations, views_panel
-from .pipeline import engine, handlers, relight, scout, still, turns
+from .pipeline import engine, handlers, relight, scout, turns
 
 # migration before handlers: what follows a loaded file must find its settings in order.
-PARTS = (translations, help_page, settings, turns, engine, scout, relight, still, operators, panel, views_panel,
-         migration, handlers)
+PARTS = (translations, help_page, settings, turns, engine, scout, relight, operators, panel, views_panel, migration,
+         handlers)
 
 
 def register():

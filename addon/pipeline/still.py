@@ -4,15 +4,13 @@
 Blender does not say what a frame has changed: each engine evaluates the scene anew. So it is asked what *could* change
 with time or with the main camera, and whatever is not known to keep still counts as moving. Only the main camera may move, and what
 nothing but cameras depends on: a camera's way through a building, a turntable that turns the camera. Views are kept within one
-render job only, since between two anything may be edited, and in a window no longer than nothing is.
+render job, since between two anything may be edited, and not in a window, where it may be in the midst of one: what the
+dependency graph reports there does not tell an edit from what a render itself sets off.
 """
 
 import os
 
 import bpy
-from bpy.app.handlers import persistent
-
-from .nodes import MARK
 
 KINDS = {"ACTION", "ARMATURE", "CAMERA", "COLLECTION", "CURVE", "CURVES", "FONT", "IMAGE", "KEY", "LATTICE", "LIGHT",
          "LIGHT_PROBE", "MATERIAL", "MESH", "META", "NODETREE", "OBJECT", "POINTCLOUD", "SCENE", "SPEAKER", "TEXTURE",
@@ -35,7 +33,7 @@ _again = {}    # of those, the views.Saved that the frame at hand uses again
 
 
 def begin():
-    """A render begins or is over, or something was edited meanwhile: nothing is known to keep still."""
+    """A render begins or is over: nothing is known to keep still."""
     for each in (_moving, _known, _again):
         each.clear()
 
@@ -43,6 +41,8 @@ def begin():
 def recall(scene, depsgraph, view, shown):
     """Whether `view` of `scene` need not be rendered in this frame. shown: all that decides what it sees of a still scene.
     depsgraph: one in which all that the view sees is evaluated."""
+    if not bpy.app.background:
+        return False
     before, saved = _known.get(view.session_uid, (None, None))
     if before != shown or not os.path.exists(saved.path) or moving(scene, depsgraph):
         return False
@@ -133,20 +133,3 @@ def _moves_cameras_only(thing, users, known=()):
     elif thing.id_type not in {"CAMERA", "ACTION"}:
         return thing.id_type in {"SCENE", "COLLECTION", "SCREEN", "WINDOWMANAGER", "WORKSPACE"} and bool(known)
     return all(_moves_cameras_only(each, users, (*known, thing)) for each in users.get(thing, ()))
-
-
-@persistent
-def _edited(_scene, depsgraph):
-    """In a window somebody works while an animation is rendered."""
-    if depsgraph.mode == "VIEWPORT" and any(MARK not in update.id.original for update in depsgraph.updates):
-        begin()
-
-
-def register():
-    bpy.app.handlers.depsgraph_update_post.append(_edited)
-
-
-def unregister():
-    if _edited in bpy.app.handlers.depsgraph_update_post:
-        bpy.app.handlers.depsgraph_update_post.remove(_edited)
-    begin()
