@@ -5,7 +5,7 @@
 #define FREE_TOLERANCE 1.0005 // of the farthest depth in a texel: so far behind it still counts as seen
 #define THICKNESS 0.03        // of the way: so thick is what no view looks behind
 #define BISECTIONS 4          // of a step in which a way goes behind something or comes out
-#define CONTINUOUS 0.2        // of the change in the gap over that step, that may be left after these
+#define CONTINUOUS 0.4        // of the change in the gap over that step, that may be left after these
 #define SLOPE 2.0             // of the step: more change is no surface's that it passes through, but from edge to edge of others
 
 // Planar depth of what the view shows there; 0 outside its frame and behind it.
