@@ -26,7 +26,7 @@ PRESETS = ("draft", "paper", "production", "reference")
 OWN_FRAMES = 7               # for Afterlight's own time, at one EEVEE sample each: it does not depend on them
 MEMORY_SIZE = 1920, 1080
 MEMORY_FRAMES = 3
-MEMORY_VIEWS = 7          # of Radiosity: its default at most
+MEMORY_VIEWS = 7             # of Radiosity: its default at most
 
 
 def open_scene(path, size, afterlight):
@@ -119,7 +119,8 @@ def measure_memory(path, names):
 
 def print_peak(path, case):
     """Render `path` in this process: by EEVEE alone ("plain"), with a compositor that only passes the picture on
-    ("compositor"), or lit by a preset, with as many views as automatic ones can be by default. Prints the most memory that it has taken, in MB."""
+    ("compositor"), or lit by a preset, with as many views as automatic ones can be by default. Prints the most memory that it
+    has taken, in MB."""
     afterlight = session.enable_afterlight()
     import bpy
     scene = open_scene(path, MEMORY_SIZE, afterlight)

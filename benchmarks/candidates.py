@@ -180,10 +180,7 @@ def ticked(afterlight, preset):
 def short(bounces, samples):
     """Cycles with few samples."""
     def bounced(scene, final, plain):
-        found = references.read(scene)["indirect"]
-        for alone in references.alone(scene):
-            found = found + references.render(scene, alone, samples, SEED)["direct"]
-        return found
+        return references.with_alone(scene, references.read(scene)["indirect"], samples, SEED)
     return Candidate(f"Cycles, {samples} sample{'s' * (samples > 1)}", "Cycles",
                      lambda scene: references.as_cycles(scene, bounces, samples, SEED), bounced)
 

@@ -179,6 +179,11 @@ def render(scene, bounces, samples, seed):
         return read(scene)
 
 
+def with_alone(scene, indirect, samples, seed):
+    """(H, W, 3): indirect light by Cycles, and the direct light of what is rendered by itself: see alone()."""
+    return sum((render(scene, each, samples, seed)["direct"] for each in alone(scene)), indirect)
+
+
 def read(scene):
     """{name in KEPT: (H, W, 3) float32} of the finished render by Cycles."""
     found = saved_passes(scene, "Combined", *PASSES.values())

@@ -191,7 +191,8 @@ def _memory(measured):
              f"{peak - measured.memory['plain']:+.0f}") for case, peak in measured.memory.items()]
     return ["## Memory",
             f"Peak resident memory of a process that renders three frames at {_size(measured.memory_size)}, one "
-            "process a case; Radiosity with seven further views. On a software GPU, textures are part of it. Blender itself grows up to the third frame.",
+            "process a case; Radiosity with seven further views. On a software GPU, textures are part of it. Blender "
+            "itself grows up to the third frame.",
             table(("case", "peak, MB", "above EEVEE alone, MB"), rows)]
 
 

@@ -25,7 +25,6 @@ from . import candidates, references  # noqa: E402
 
 BLOCK = 8
 SIZE, EEVEE_SAMPLES, BOUNCES = (320, 180), 16, 4
-ANEW = "views placed anew"
 
 
 def blocks(picture):
@@ -40,9 +39,7 @@ def truth(scene, samples, frame):
     for half in range(2):
         seed = 2 * frame + half
         found = references.render(scene, BOUNCES, samples, seed)["indirect"]
-        for alone in references.alone(scene):
-            found = found + references.render(scene, alone, samples, seed)["direct"]
-        halves.append(blocks(found))
+        halves.append(blocks(references.with_alone(scene, found, samples, seed)))
     return (halves[0] + halves[1]) / 2, (halves[0] - halves[1]) / 2
 
 
@@ -67,7 +64,7 @@ def measure(path, frames, travel, samples, afterlight):
     ways = [as_in_one_render(afterlight, each) if each.group == "Afterlight" else each
             for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"]) if each.group != "Cycles"]
     anew = candidates.ticked(afterlight, "production")  # as on a farm, of a file that holds no views
-    anew.name += f", {ANEW}"
+    anew.name += ", views placed anew"
     ways.append(anew)
     views = afterlight.addon.pipeline.views
     start, errors, noise, light, poses = scene.camera.matrix_world.copy(), {}, [], [], {}

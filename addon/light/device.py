@@ -285,8 +285,8 @@ def _to_settle(target):
 
 
 def settle() -> None:
-    """Wait for all that has been dispatched, sent and cleared. Blender's windows have a GPU context each, and what one has not finished
-    another need not see: so `place` calls this before it lets go of its turn."""
+    """Wait for all that has been dispatched, sent and cleared. Blender's windows have a GPU context each, and what one has not
+    finished another need not see: so `place` calls this before it lets go of its turn."""
     global _written
     target, _written = _written, None
     if target is not None:
