@@ -20,7 +20,8 @@ bool shows(int view, vec3 place, vec3 normal, vec3 eye, vec3 projected, float de
     return false;
   }
   float cosine = max(abs(dot(normal, direction(other))), COSINE_FLOOR);
-  float texel = abs(views.projection[view].x) * (is_parallel(view) ? 1.0 : projected.z);
+  vec2 side = abs(views.projection[view].xy);
+  float texel = max(side.x, side.y) * (is_parallel(view) ? 1.0 : projected.z);
   float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
   return abs(depth - projected.z) < DEPTH_TOLERANCE * projected.z + SLOPE_TOLERANCE * slope * texel;
 }

@@ -105,7 +105,7 @@ def shows(eye, place, normal, back, projected):
     other = to_eye(eye, place)
     cosine = np.maximum(np.abs(dot(normal, direction(other))), COSINE_FLOOR)
     depth = projected[..., 2]
-    texel = abs(eye.scale[0]) * (1 if eye.parallel else depth)
+    texel = max(abs(eye.scale)) * (1 if eye.parallel else depth)
     slope = np.sqrt(np.maximum(1 - cosine ** 2, 0)) / cosine
     near = np.abs(depth_at(eye, projected) - depth) < DEPTH_TOLERANCE * depth + SLOPE_TOLERANCE * slope * texel
     return (dot(normal, other) * dot(normal, back) > 0) & near

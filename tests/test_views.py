@@ -103,7 +103,7 @@ def test_a_render_border_leaves_views_whole(scene, views, seen, tmp_path, crop):
     assert np.abs(positions(passes, camera) - place)[hit].max() < 1e-3
     width, height = passes.size
     corners = camera.offset, camera.offset + camera.scale * (width, height)
-    assert np.allclose(corners, [(-16 / 27, -1), (16 / 27, 1)], atol=1e-5)  # 90 degrees along the longer side
+    assert np.allclose(corners, [(-1, -1), (1, 1)], atol=1e-5)  # 90 degrees along either side
 
 
 # What comes and goes with the settings
@@ -428,6 +428,14 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
     render(scene, tmp_path / "lit.exr")
     shares, _ = status.coverage(scene)
     assert shares[-1] > 0.95, "coverage had fallen, so the views moved"
+
+    stored = views.placed(scene)
+    assert bpy.ops.afterlight.place_views() == {"FINISHED"} and scene.afterlight.views == "MANUAL"
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    kept = [each.camera.evaluated_get(depsgraph) for each in scene.afterlight.view_cameras]
+    assert np.allclose([camera.matrix_world for camera in kept], stored.poses, atol=1e-5)
+    for camera in kept:
+        assert np.allclose(views.lens_of(camera, depsgraph, scene).pixel, views.wide_lens(scene, 0, 0).pixel, rtol=1e-5)
 
 
 def pane(kind):

@@ -103,7 +103,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
 
     def _choose(self, scene, depsgraph, light, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
-        half, most, known = views.half_field(scene), scene.afterlight.view_count, views.placed(scene)
+        half, most, known = views.HALF_FIELD, scene.afterlight.view_count, views.placed(scene)
         old = known.poses if known else []
         shares = placement.covered(light, seen, cast, half, old)
         if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL:
