@@ -37,7 +37,7 @@ class Stages:
 
 def stages(light, views, chosen):
     table = light.views.view_table(views, views[0].passes.size, chosen)
-    depths, emitters, receivers, _ = light.views.look(views, views[0].passes, table)
+    depths, emitters, receivers, _ = light.views.look(views, table)
     return Stages(table, depths, emitters, receivers, views_64.eyes_of(views, int(table["depths"][2])))
 
 

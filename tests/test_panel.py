@@ -57,7 +57,7 @@ def test_the_last_render_is_shown_by_stage_with_total_and_memory(scene, addon, t
     assert panel.poll(bpy.context)
     labels = [options["text"] for kind, _, options, _ in drawn(panel) if kind == "label"]
     shown = dict(zip(labels[::2], labels[1::2]))
-    assert list(shown) == ["Write passes", "Read passes", "Gather on the GPU", "Hand back", "Total time", "GPU memory",
+    assert list(shown) == ["Write passes", "Gather on the GPU", "Hand back", "Total time", "GPU memory",
                            "Passes file"]
     seconds = [float(value.removesuffix(" s")) for value in shown.values() if value.endswith(" s")]
     assert abs(sum(seconds[:-1]) - seconds[-1]) < 0.003 and seconds[-1] > 0

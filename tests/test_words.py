@@ -105,7 +105,7 @@ def rna_texts(addon):
                 yield from (item.name, item.description)
 
 
-STAGES = "place views", "EEVEE, views", "write passes", "read passes", "gather on the GPU", "hand back", "GPU memory", "passes file"
+STAGES = "place views", "EEVEE, views", "write passes", "gather on the GPU", "hand back", "GPU memory", "passes file"
 LIGHT_STAGES = "upload", "pyramid", "gather", "upsample", "read back"
 SAID = {"say": 0, "Problem": 0, "GpuUnavailable": 0, "poll_message_set": 0, "_progress": 0}
 

@@ -45,15 +45,14 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
         if progress(stage, fraction):
             raise Cancelled
 
-    passes = views[0].passes
-    width, height = passes.size
-    table = view_table(views, passes.size, settings)
+    width, height = size = views[0].passes.size
+    table = view_table(views, size, settings)
     if world is not None and settings.visibility:
         table["world"][:, :3] = world
-    settings = replace(settings, start=start_of(settings, passes.size))
-    depths, emitters, receivers, channels = look(views, passes, table, report, broken)
+    settings = replace(settings, start=start_of(settings, size))
+    depths, emitters, receivers, channels = look(views, table, report, broken)
     lap("views", receivers)
-    base = pack(channels, passes, views[0].camera, settings)
+    base = pack(channels, views[0].passes, views[0].camera, settings)
     for name in device.LIGHT_CHANNELS:
         del channels[name]
 
@@ -89,19 +88,19 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
     return picture
 
 
-def look(views, passes, table, report=lambda stage, fraction: None, broken=None):
-    """(depth maps, emitters, receivers, channels of the main view) of all views; passes: the main one's."""
-    size = passes.size
+def look(views, table, report=lambda stage, fraction: None, broken=None):
+    """(depth maps, emitters, receivers, channels of the main view) of all views. One view's passes are held at a time."""
+    size = views[0].passes.size
     depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
     for index, view in enumerate(views):
         report("views", index / len(views) / 2)
-        channels = upload(view.passes if index else passes, light=False)
+        channels = upload(view.passes, light=False)
         device.dispatch("depths", camera_block(view, index, size), channels | {"depths_out": depths},
                         device.groups(*table["depths"][:2]), table)
     targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
     for index in reversed(range(len(views))):  # the main one last: its channels are needed again
         report("views", 1 - (index + 1) / len(views) / 2)
-        shown = views[index].passes if index else passes
+        shown = views[index].passes
         channels = upload(shown, None if index else broken)
         name = "emit_with_normals" if shown.lacks_normals() else "emit"
         for kind, target in targets.items():

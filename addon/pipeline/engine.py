@@ -150,24 +150,22 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             self.file = passes.save_once(shot.scene)
             self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
-        start = time.perf_counter()
         path = shot.again.path if shot.again else self.file
-        frame = passes.load(path, shot.layer, shot.window)
+        main = light.View(lambda: passes.load(path, shot.layer, shot.window), shot.camera)
         saved = shot.again.views if shot.again else self.views
         if shot.again and shot.views > shot.again.wanted:
             self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
                                        "the light from all of them", len(saved), shot.views))
         further = [light.View(view.load, view.camera) for view in saved]
-        shot.memory = {"GPU memory": light.gpu_bytes(*frame.size, shot.settings, len(further)),
+        shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further)),
                        "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}
-        shot.spent("read passes", time.perf_counter() - start)
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}
         if isinstance(shot.settings, light.Draws):
-            picture = light.gather_views([light.View(frame, shot.camera), *further], shot.settings, shot.world, **options)
+            picture = light.gather_views([main, *further], shot.settings, shot.world, **options)
         else:
-            picture = light.gather_indirect(frame, shot.camera, shot.settings, **options)
+            picture = light.gather_indirect(main.passes, shot.camera, shot.settings, **options)
         for name, count in broken.items():
             self.report({"WARNING"}, say(
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """EEVEE's finished passes and the camera that saw them, out of Blender and into arrays."""
 
+import mmap
 import os
 
 import bpy
@@ -237,7 +238,9 @@ def _mapped(path, header):
     (left, top), (right, bottom) = header["dataWindow"]
     width, height = int(right - left + 1), int(bottom - top + 1)
     line = 8 + 4 * width * len(channels)
-    data = np.memmap(path, np.uint8, "c")  # private: what is written to the arrays stays out of the file
+    with open(path, "rb") as file:
+        pages = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_COPY)  # what is written to the arrays stays out of the file
+    data = np.frombuffer(pages, np.uint8)
     start = data.size - height * line
     if start <= 0:
         return None
@@ -245,6 +248,8 @@ def _mapped(path, header):
     numbers, sizes = lines[:, :8].copy().view("<i4").T
     if not np.array_equal(numbers, np.arange(top, bottom + 1)) or np.any(sizes != line - 8):
         return None
+    if hasattr(mmap, "MADV_DONTNEED"):  # for a row's number the system has mapped what is around it as well
+        pages.madvise(mmap.MADV_DONTNEED)
     planes = lines[:, 8:].view("<f4").reshape(height, len(channels), width)
     return {channel.name: planes[:, index] for index, channel in enumerate(channels)}
 

@@ -68,7 +68,6 @@ TEXTS = {
     "EEVEE, views": "EEVEE, Ansichten",
     "Write passes": "Passes schreiben",
     "Saving passes": "Passes werden gespeichert",
-    "Read passes": "Passes lesen",
     "Gather on the GPU": "Sammeln auf der GPU",
     "Upload": "Hochladen",
     "Pyramid": "Pyramide",
