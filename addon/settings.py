@@ -89,7 +89,7 @@ PARAMETERS = (
     Parameter(
         "use_world_shadow", BoolProperty, "Shadow World",
         "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of "
-        "one colour; needs Visibility, and costs nothing",
+        "one colour or of an environment picture; needs Visibility, and costs nothing",
         {"default": True}),
     Parameter(
         "views", EnumProperty, "Views",

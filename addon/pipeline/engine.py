@@ -35,7 +35,6 @@ class Shot:
     again: relight.Kept = None       # the frame whose light is gathered again, where that is what goes on
     views: int = 0                   # how many the settings ask for
     camera: light.Camera = None
-    world: np.ndarray = None         # its light, where surfaces are to take it from each other
     settings: light.Settings = None
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
@@ -82,7 +81,6 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             frame = again.frame if again else source.frame_current
             shot.settings = settings.light_settings(source.afterlight, frame)
             shot.camera = again.camera if again else self._look(depsgraph, source, shot.layer)
-            shot.world = world.light(depsgraph) if source.afterlight.use_world_shadow else None
 
     def render(self, depsgraph):
         """Gather, and hand back the pass. Whatever happens the pass is there, black if it must be."""
@@ -163,7 +161,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         timed, broken = {} if status.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}
         if isinstance(shot.settings, light.Draws):
-            picture = light.gather_views([main, *further], shot.settings, shot.world, **options)
+            sky = world.light(depsgraph) if shot.scene.afterlight.use_world_shadow else None
+            picture = light.gather_views([main, *further], shot.settings, sky, **options)
         else:
             picture = light.gather_indirect(main.passes, shot.camera, shot.settings, **options)
         for name, count in broken.items():

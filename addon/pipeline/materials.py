@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A rough idea of how a material looks, read off its nodes: enough to weigh what views should see."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 UNKNOWN = 0.5              # albedo where a texture or a group of nodes decides
 DEEPEST = 8                # shader nodes behind one another that are looked through
@@ -39,17 +41,56 @@ def sky(world):
     return value("Color", UNKNOWN) * value("Strength", 1.0)
 
 
-def plain_sky(world):
-    """(3,) radiance of a world of one colour; None where nodes decide it."""
+@dataclass(frozen=True)
+class Sky:
+    """A world whose light can be told. color: (3,), its radiance, or what its picture is multiplied by. image: equirectangular;
+    None where it is of one colour. to_world: (3, 3), from the picture's directions to the world's."""
+
+    color: np.ndarray
+    image: object = None
+    to_world: np.ndarray = field(default_factory=lambda: np.eye(3))
+
+
+def sky_of(world):
+    """Sky of a world; None where nodes decide it that are not read here."""
     if not world.node_tree:
-        return tuple(world.color)
+        return Sky(np.array(world.color))
     node = _shines(world)
     if node is None:
-        return 0.0, 0.0, 0.0
-    if node.bl_idname != "ShaderNodeBackground" or any(socket.is_linked for socket in node.inputs):
+        return Sky(np.zeros(3))
+    if node.bl_idname != "ShaderNodeBackground" or node.inputs["Strength"].is_linked:
         return None
-    strength = node.inputs["Strength"].default_value
-    return tuple(strength * channel for channel in node.inputs["Color"].default_value[:3])
+    strength, color = node.inputs["Strength"].default_value, node.inputs["Color"]
+    texture = _linked(color)
+    if texture is None:
+        return Sky(strength * np.array(color.default_value[:3]))
+    to_world = _turn(texture)
+    if to_world is None or color.links[0].from_socket.name != "Color":
+        return None
+    return Sky(np.full(3, strength), texture.image, to_world)
+
+
+def _turn(node):
+    """(3, 3), from the directions of an environment texture's picture to the world's; None where it is no such texture, or is laid
+    out by anything but a turn."""
+    if (node.bl_idname != "ShaderNodeTexEnvironment" or node.projection != "EQUIRECTANGULAR" or node.image is None
+            or node.image.source not in {"FILE", "GENERATED"}):
+        return None
+    vector, turn = node.inputs["Vector"], np.eye(3)
+    mapping = _linked(vector)
+    if mapping is not None and mapping.bl_idname == "ShaderNodeMapping":
+        location, rotation, scale = (mapping.inputs[name] for name in ("Location", "Rotation", "Scale"))
+        if (mapping.vector_type != "POINT" or any(socket.is_linked for socket in (location, rotation, scale))
+                or any(location.default_value) or any(each != 1 for each in scale.default_value)):
+            return None
+        turn = np.array(rotation.default_value.to_matrix()).T
+        vector = mapping.inputs["Vector"]
+        if not vector.is_linked:
+            return None
+    if not vector.is_linked:
+        return turn
+    from_socket = vector.links[0].from_socket
+    return turn if from_socket.node.bl_idname == "ShaderNodeTexCoord" and from_socket.name == "Generated" else None
 
 
 def _shines(world):

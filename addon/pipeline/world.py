@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The world's light as EEVEE has it in Diffuse Direct: the same for all surfaces that face one way, whatever stands
-before them."""
+before them. EEVEE keeps no more of a world than its mean and the way it leans (the first order of spherical harmonics)."""
 
 import numpy as np
 
 from . import materials, nodes
+
+ROWS = 512                 # of a picture of the surroundings that are looked at, and twice as many columns
+
+_known = {}                # what harmonics() found, by what it depends on
 
 
 def mirror(scene, helper):
@@ -15,8 +19,73 @@ def mirror(scene, helper):
 
 
 def light(depsgraph):
-    """(4, 3), as light.gather_views() wants it, of the world of a depsgraph's view layer; None where there is none, or
-    where more than one colour decides."""
+    """(4, 3), as light.gather_views() wants it, of the world of a depsgraph's view layer: one of a single colour, or of a picture
+    all around. None where there is no light, or where other nodes decide it."""
     world = depsgraph.view_layer.world_override or depsgraph.scene.world
-    color = materials.plain_sky(world.evaluated_get(depsgraph)) if world else None
-    return None if color is None or not any(color) else np.concatenate([[color], np.zeros((3, 3))])
+    if world is None:
+        return None
+    world = world.evaluated_get(depsgraph)
+    sky = materials.sky_of(world)
+    if sky is None:
+        return None
+    found = np.zeros((4, 3))
+    if sky.image is None:
+        found[0] = sky.color
+    else:
+        found = _of_image(sky, world.sun_threshold)
+        if found is None:
+            return None
+    return found if found.any() else None
+
+
+def forget():
+    """A render begins or is over: pictures may change until the next."""
+    _known.clear()
+
+
+def _of_image(sky, sun_threshold):
+    """harmonics() of a sky's picture, turned as it is; None where its colours can't be told."""
+    image = sky.image
+    key = image.session_uid, *image.size, image.filepath, image.colorspace_settings.name, *sky.color, sun_threshold
+    if key not in _known:
+        radiance = _radiance(image)
+        _known[key] = None if radiance is None else harmonics(radiance * sky.color, sun_threshold)
+    if _known[key] is None:
+        return None
+    mean, lean = _known[key][:1], _known[key][1:]
+    return np.concatenate([mean, sky.to_world @ lean])
+
+
+def harmonics(radiance, sun_threshold):
+    """(4, 3) float64: by how much surroundings light a white surface with normal n, found[0] + n @ found[1:], as radiance.
+
+    radiance: (rows, columns, 3), W sr^-1 m^-2, equirectangular, the lowest row first. sun_threshold: EEVEE makes a sun of
+    what is brighter in any channel, which then casts shadows and is none of ours; 0 for none. A lobe of cosines keeps all
+    of the mean, and 2/3 of the first order."""
+    rows, columns = radiance.shape[:2]
+    if sun_threshold > 0:
+        radiance = radiance * np.minimum(1, sun_threshold / np.maximum(np.abs(radiance).max(-1, keepdims=True), 1e-8))
+    up = (np.arange(rows) + 0.5) / rows * np.pi - np.pi / 2
+    around = np.pi - (np.arange(columns) + 0.5) / columns * 2 * np.pi
+    share = np.cos(up) / (np.cos(up).sum() * columns)  # of the sphere, of a pixel in each row
+    in_rows = np.einsum("r,rcx->rx", share, radiance)
+    leaning = [np.einsum("r,rcx,c->x", share * np.cos(up), radiance, turn(around)) for turn in (np.cos, np.sin)]
+    return np.array([in_rows.sum(0), *(2 * each for each in leaning), 2 * np.sin(up) @ in_rows])
+
+
+def _radiance(image):
+    """(rows, columns, 3) float64, the lowest row first: every so many pixels of an image; None where it has none, or where
+    their colours are neither linear nor sRGB."""
+    width, height = image.size
+    encoding = image.colorspace_settings.name
+    if not width or image.channels < 3 or not (image.is_float or encoding in {"sRGB", "Linear Rec.709", "Non-Color"}):
+        return None
+    pixels = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, image.channels)
+    found = pixels[::max(1, height // ROWS), ::max(1, width // (2 * ROWS)), :3].astype(float)
+    if not np.isfinite(found).all():
+        return None
+    if image.is_float or encoding != "sRGB":
+        return found
+    return np.where(found <= 0.04045, found / 12.92, ((found + 0.055) / 1.055) ** 2.4)

@@ -56,9 +56,9 @@ TEXTS = {
 
     "Shadow World": "Welt abschatten",
     "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of one "
-    "colour; needs Visibility, and costs nothing":
-        "Das Licht der Welt wegnehmen, wo Flächen davor stehen: EEVEE lässt es durch Wände scheinen. Für einfarbige Welten; "
-        "braucht Sichtbarkeit und kostet keine Zeit",
+    "colour or of an environment picture; needs Visibility, and costs nothing":
+        "Das Licht der Welt wegnehmen, wo Flächen davor stehen: EEVEE lässt es durch Wände scheinen. Für einfarbige Welten und "
+        "solche aus einem Umgebungsbild; braucht Sichtbarkeit und kostet keine Zeit",
 
     # Panel and menu
     "Indirect Light Presets": "Voreinstellungen für indirektes Licht",
