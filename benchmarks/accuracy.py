@@ -82,7 +82,7 @@ def masks_of(truth, surface):
 
 def table(truth, rendered, kind, mask, flip=True):
     """The rows of one kind of surface. An error that the reference's noise could have made is never given; what the true
-    one is at most is: what was measured and that noise together. Energy is a mean of so many pixels that noise is none there."""
+    one is about is, and at most: what was measured and that noise together. Energy is a mean of so many pixels that noise is none there."""
     pictures = {"indirect": truth.indirect(truth.longest), "final": truth.final(truth.longest)}
     noise, first, rows = truth.noise(mask), rendered[0], []
     for each in rendered:
@@ -100,6 +100,8 @@ def table(truth, rendered, kind, mask, flip=True):
             spoilt = None not in (level, found["l1"]) and found["l1"] < CLEARLY * level
             row[picture] = found if not spoilt else {
                 "energy": found["energy"], "at_most": found["l1"] + level,
+                "about": None if each.bounces is not None else metrics.l1_without_noise(
+                    getattr(each, picture), *(getattr(truth, picture)(truth.longest, half) for half in range(2)), mask),
                 "refused": f"the reference's noise, {level:.4f}, is over a fifth of the error",
                 "bounces": sorted({truth.longest, each.bounces} - {None})}
     whole = pictures["indirect"][mask].mean(dtype=float)

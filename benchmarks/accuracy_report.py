@@ -57,7 +57,8 @@ def markdown(found, folder, study=None):
         "those percentiles, *HDR-FLIP* the error that an eye sees, *cost* the frame's seconds over plain EEVEE's beside "
         "it. Only surfaces count, no background.",
         f"The reference is Cycles in two independent halves, whose difference is its noise. A number under "
-        f"{found['clearly']} times the noise is refused; what stands with a < is what the true error is at most."]
+        f"{found['clearly']} times the noise is refused; what stands with a < is what the true error is at most, and before it what it is about, if the "
+        "noise's share is told by how much larger the error is against each half alone (`metrics.l1_without_noise`)."]
     if measured(found):
         parts += [f"![Error against cost]({folder}/{PLOT})", *means(found)]
     for scene in found["scenes"]:
@@ -84,7 +85,8 @@ def mean_of(scenes):
     """Of the numbers of several scenes; the mean of bounds is a bound."""
     found = {key: average([each.get(key) for each in scenes]) for key in metrics.NAMES}
     if any("at_most" in each for each in scenes):
-        found["at_most"] = average([each.get("at_most", each.get("l1")) for each in scenes])
+        for key in ("at_most", "about"):
+            found[key] = average([each.get(key, each.get("l1")) for each in scenes])
     return found
 
 
@@ -120,7 +122,8 @@ def cells(row, picture):
     missing = "refused" if "refused" in found else number(None)
     numbers = {key: missing if found.get(key) is None else number(found[key]) for key in metrics.NAMES}
     if "at_most" in found:
-        numbers["l1"] = f"< {number(found['at_most'])}"
+        about = f"{number(found['about'])}, " if found.get("about") is not None else ""
+        numbers["l1"] = f"{about}< {number(found['at_most'])}"
     return [row["name"], *numbers.values(), number(row.get("cost"), 2)]
 
 
