@@ -8,7 +8,7 @@ from mathutils import Matrix
 
 from . import panel
 from .operators import _OnEditableScene as OnEditableScene
-from .pipeline import status, views, wiring
+from .pipeline import lenses, status, views, wiring
 from .translations import say
 
 
@@ -78,7 +78,7 @@ class AFTERLIGHT_OT_place_views(OnEditableScene, Operator):
         settings.view_cameras.clear()
         for index, pose in enumerate(found.poses, 1):
             data = bpy.data.cameras.new(f"{say('View')} {index}")
-            data.angle, data.clip_start = views.FIELD, found.clearance / 4
+            data.angle, data.clip_start = lenses.FIELD, found.clearance / 4
             data.clip_end = max(data.clip_end, scene.camera.data.clip_end if scene.camera else 0)
             camera = bpy.data.objects.new(data.name, data)
             camera.matrix_world = Matrix(np.asarray(pose).tolist())

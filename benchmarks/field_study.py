@@ -51,7 +51,7 @@ def study(path, wanted, afterlight):
     mask = accuracy.masks_of(truth, (plain.passes.depth > 0) & (plain.passes.depth < 1e9))["diffuse"]
     noise = truth.noise(mask)["indirect"]
     for field in wanted.fields.split(","):
-        afterlight.addon.pipeline.views.HALF_FIELD = half_field(field)
+        afterlight.addon.pipeline.lenses.HALF_FIELD = half_field(field)
         cells = []
         for seed in range(wanted.seeds):
             final, (shares, _) = lit(scene, seed, wanted.preset, afterlight)

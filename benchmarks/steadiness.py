@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How calm the indirect light is while the camera moves: what changes between frames beyond what Cycles' frames change.
 
-    .venv/bin/python -m benchmarks.steadiness [FILE.blend] [--frames 24] [--travel=-0.25,0,-0.25] [--samples 64] [--page FILE]
+    .venv/bin/python -m benchmarks.steadiness [FILE.blend] [--frames 24] [--travel=-0.25,0,-0.25] [--samples 64] [--size 320x180]
+        [--page FILE]
 
 The camera goes by `travel` (to its right, up and back, in parts of the picture's mean depth) in so many frames. For each way to
 render, the error against Cycles is taken in every frame, and its change to the next: an error that stays where it is does not
@@ -21,10 +22,10 @@ sys.path.insert(0, str(ROOT / "sample_blends"))
 
 import session  # noqa: E402
 
-from . import candidates, references  # noqa: E402
+from . import accuracy, candidates, references  # noqa: E402
 
 BLOCK = 8
-SIZE, EEVEE_SAMPLES, BOUNCES = (320, 180), 16, 4
+EEVEE_SAMPLES, BOUNCES = 16, 4
 
 
 def blocks(picture):
@@ -58,9 +59,9 @@ def as_in_one_render(afterlight, way):
     return candidates.Candidate(way.name, way.group, mode, way.bounced)
 
 
-def measure(path, frames, travel, samples, afterlight):
+def measure(path, frames, travel, samples, size, afterlight):
     """{name: (frames, h, w, 3) of errors}, noise of the reference (frames, h, w, 3), mean of its light, {name: views}."""
-    scene = candidates.open_scene(path, SIZE, EEVEE_SAMPLES, afterlight)
+    scene = candidates.open_scene(path, size, EEVEE_SAMPLES, afterlight)
     ways = [as_in_one_render(afterlight, each) if each.group == "Afterlight" else each
             for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"]) if each.group != "Cycles"]
     anew = candidates.ticked(afterlight, "production")  # as on a farm, of a file that holds no views
@@ -115,13 +116,14 @@ def main():
     parser.add_argument("--frames", type=int, default=24)
     parser.add_argument("--travel", default="-0.25,0,-0.25")
     parser.add_argument("--samples", type=int, default=64, help="of each half of Cycles' frames; 64")
+    parser.add_argument("--size", type=accuracy.picture_size, default=(320, 180), metavar="WxH", help="320x180")
     parser.add_argument("--page", type=Path)
     wanted = parser.parse_args()
     afterlight = session.enable_afterlight()
     travel = [float(part) for part in wanted.travel.split(",")]
-    rows = table(*measure(wanted.file, wanted.frames, travel, wanted.samples, afterlight))
-    text = "\n".join([f"`{wanted.file.name}`, {wanted.frames} frames, travel {wanted.travel} of the mean depth, Cycles with "
-                      f"{2 * wanted.samples} samples:", "", *rows, ""])
+    rows = table(*measure(wanted.file, wanted.frames, travel, wanted.samples, wanted.size, afterlight))
+    text = "\n".join([f"`{wanted.file.name}`, {wanted.frames} frames of {wanted.size[0]} x {wanted.size[1]}, travel {wanted.travel} of the mean "
+                      f"depth, Cycles with {2 * wanted.samples} samples:", "", *rows, ""])
     print(text)
     if wanted.page:
         wanted.page.write_text(text)

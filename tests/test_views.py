@@ -432,10 +432,11 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
     stored = views.placed(scene)
     assert bpy.ops.afterlight.place_views() == {"FINISHED"} and scene.afterlight.views == "MANUAL"
     depsgraph = bpy.context.evaluated_depsgraph_get()
+    lenses = afterlight.addon.pipeline.lenses
     kept = [each.camera.evaluated_get(depsgraph) for each in scene.afterlight.view_cameras]
     assert np.allclose([camera.matrix_world for camera in kept], stored.poses, atol=1e-5)
     for camera in kept:
-        assert np.allclose(views.lens_of(camera, depsgraph, scene).pixel, views.wide_lens(scene, 0, 0).pixel, rtol=1e-5)
+        assert np.allclose(lenses.lens_of(camera, depsgraph, scene).pixel, lenses.wide_lens(scene, 0, 0).pixel, rtol=1e-5)
 
 
 def pane(kind):

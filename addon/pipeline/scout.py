@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import light
 from ..translations import say
-from . import checks, passes, placement, rays, relight, status, turns, views, wiring
+from . import checks, lenses, passes, placement, rays, relight, status, turns, views, wiring
 from .picture import Picture
 from .status import Problem
 
@@ -77,7 +77,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
                 self._warn(scene, problem)
             else:
                 evaluated = each.camera.evaluated_get(depsgraph)
-                views.pose(view, scene, evaluated.matrix_world, views.lens_of(evaluated, depsgraph, scene))
+                lenses.pose(view, scene, evaluated.matrix_world, lenses.lens_of(evaluated, depsgraph, scene))
 
     def _score(self, scene, depsgraph, light, seen, cast):
         """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left out."""
@@ -85,7 +85,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         for view, each in zip(views.scenes(scene), scene.afterlight.view_cameras):
             if not view.view_layers[0].use:
                 continue
-            camera = views.camera(view, depsgraph, scene)
+            camera = lenses.camera(view, depsgraph, scene)
             frame = passes.window(scene)[0][2:]
             row, _, depth = passes.project(light.places, frame, camera)
             eye = camera.position
@@ -103,7 +103,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
 
     def _choose(self, scene, depsgraph, light, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
-        half, most, known = views.HALF_FIELD, scene.afterlight.view_count, views.placed(scene)
+        half, most, known = lenses.HALF_FIELD, scene.afterlight.view_count, views.placed(scene)
         old = known.poses if known else []
         shares = placement.covered(light, seen, cast, half, old)
         if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL:
@@ -115,8 +115,8 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
             if not poses and shares[0] < 1 - placement.FALL:
                 self._warn(scene, say("No views were placed: there is no free place that shows more than the camera does"))
         far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * light.size)
-        lens = views.wide_lens(scene, known.clearance / 4, far)
-        turns.run(lambda: [views.pose(view, scene, pose, lens) for view, pose in zip(views.scenes(scene), known.poses)])
+        lens = lenses.wide_lens(scene, known.clearance / 4, far)
+        turns.run(lambda: [lenses.pose(view, scene, pose, lens) for view, pose in zip(views.scenes(scene), known.poses)])
         return shares
 
 
