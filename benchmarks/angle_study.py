@@ -39,7 +39,7 @@ def study(seeds, size, afterlight):
         placement.LEAST_COSINE = cosine
         energies, counts = [], []
         for seed in range(seeds):
-            views.scout(scene).pop(views.PLACED, None)
+            views.forget_placed(scene)
             scene.afterlight.seed = seed
             _, final = candidates.written(scene)
             energies.append((final.mean() - plain.mean()) / true)

@@ -12,7 +12,6 @@ What is left of that is measured from two halves of its samples, and stands besi
 
 import argparse
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -44,54 +43,54 @@ def truth(scene, samples, frame):
     return (halves[0] + halves[1]) / 2, (halves[0] - halves[1]) / 2
 
 
-def as_in_one_render(afterlight, way):
-    """A way of Afterlight's whose views stay from frame to frame; to untick it, as is done here, takes them away."""
-    views, known = afterlight.addon.pipeline.views, []
+def dolly(camera, depth, frames, travel):
+    """The camera's matrix in each frame: it goes by `travel` x `depth` along its own axes."""
+    start = camera.matrix_world.copy()
+    for frame in range(frames):
+        matrix = start.copy()
+        step = frame / max(frames - 1, 1) * depth * np.array(travel)
+        matrix.translation = start.translation + start.to_3x3() @ type(start.translation)(step)
+        yield matrix
 
-    @contextmanager
-    def mode(scene):
-        with way.mode(scene):
-            if known and views.wanted(scene):
-                views.keep_placed(scene, known.pop())
-            yield
-            if views.wanted(scene):
-                known.append(views.placed(scene))
-    return candidates.Candidate(way.name, way.group, mode, way.bounced)
+
+def ways_of(afterlight):
+    """[(candidate, whether its views are placed anew in every frame)]: the last is as on a farm, of a file without views."""
+    ways = [(each, False) for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"]) if each.group != "Cycles"]
+    anew = candidates.ticked(afterlight, "production")
+    anew.name += ", views placed anew"
+    return [*ways, (anew, True)]
 
 
 def measure(path, frames, travel, samples, size, afterlight):
     """{name: (frames, h, w, 3) of errors}, noise of the reference (frames, h, w, 3), mean of its light, {name: views}."""
     scene = candidates.open_scene(path, size, EEVEE_SAMPLES, afterlight)
-    ways = [as_in_one_render(afterlight, each) if each.group == "Afterlight" else each
-            for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"]) if each.group != "Cycles"]
-    anew = candidates.ticked(afterlight, "production")  # as on a farm, of a file that holds no views
-    anew.name += ", views placed anew"
-    ways.append(anew)
-    views = afterlight.addon.pipeline.views
-    start, errors, noise, light, poses = scene.camera.matrix_world.copy(), {}, [], [], {}
-    depth = None
-    for frame in range(frames):
-        true, half = truth(scene, samples, frame)
-        light.append(true.mean())
+    views, camera = afterlight.addon.pipeline.views, scene.camera
+    candidates.written(scene)
+    depth = candidates.look(scene, None, afterlight).passes.depth
+    matrices = list(dolly(camera, float(np.mean(depth[depth < 1e9])), frames, travel))
+    true, noise, plain = [], [], []
+    for frame, camera.matrix_world in enumerate(matrices):
+        mean, half = truth(scene, samples, frame)
+        true.append(mean)
         noise.append(half)
-        _, final = candidates.written(scene)
-        plain = candidates.look(scene, final, afterlight)
-        if depth is None:
-            depth = float(np.mean(plain.passes.depth[plain.passes.depth < 1e9]))
-        for way in ways:
-            with way.mode(scene):
+        plain.append(candidates.look(scene, candidates.written(scene)[1], afterlight))
+        print(f"Cycles, frame {frame + 1} of {frames}", file=sys.stderr, flush=True)
+    errors, poses = {}, {}
+    for way, anew in ways_of(afterlight):
+        found, seen = errors.setdefault(way.name, []), poses.setdefault(way.name, [])
+        with way.mode(scene):  # all frames of it in one go: its views stay, and so does what they are rendered through
+            for frame, camera.matrix_world in enumerate(matrices):
+                has_views = scene.afterlight.enabled and views.wanted(scene)
+                if has_views and anew:
+                    views.forget_placed(scene)
                 _, final = candidates.written(scene)
                 if scene.afterlight.enabled and scene.afterlight.report:
                     sys.exit(scene.afterlight.report)
-                errors.setdefault(way.name, []).append(blocks(way.bounced(scene, final, plain)) - true)
-                known = views.placed(scene) if scene.afterlight.enabled and views.wanted(scene) else None
-                poses.setdefault(way.name, []).append(np.array(known.poses).ravel().tolist() if known else [])
-        print(f"frame {frame + 1} of {frames}", file=sys.stderr, flush=True)
-        matrix = start.copy()
-        step = (frame + 1) / max(frames - 1, 1) * depth * np.array(travel)
-        matrix.translation = start.translation + start.to_3x3() @ type(start.translation)(step)
-        scene.camera.matrix_world = matrix
-    return {name: np.array(each) for name, each in errors.items()}, np.array(noise), float(np.mean(light)), poses
+                found.append(blocks(way.bounced(scene, final, plain[frame])) - true[frame])
+                known = views.placed(scene) if has_views else None
+                seen.append(np.array(known.poses).ravel().tolist() if known else [])
+        print(f"{way.name}: {frames} frames", file=sys.stderr, flush=True)
+    return {name: np.array(each) for name, each in errors.items()}, np.array(noise), float(np.mean(true)), poses
 
 
 def table(errors, noise, light, poses):

@@ -37,5 +37,5 @@ void main()
     vec3 world = PI * world_light(to_world(0, normal)) / max(parameters.output_scale.x, 1.0);
     sum.rgb = max(sum.rgb, -max(world, vec3(0.0)));
   }
-  imageStore(total_out, texel, sum);
+  imageStore(total_out, texel, vec4(sum.rgb, 0.0));
 }

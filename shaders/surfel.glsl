@@ -86,16 +86,23 @@ uvec4 pack_surfel(Sums sums, ivec2 texel, int level)
                pack_signed(sums.vector_area / sums.area, DIRECTION_STEPS), pack_signed(mantissa, RADIANCE_STEPS));
 }
 
-Surfel unpack_surfel(uvec4 bits, ivec2 texel, int level)
+// corner: where the texel's lower left corner lies on the image plane; size: the texel's size there.
+Surfel unpack_surfel_of(uvec4 bits, vec2 corner, vec2 size)
 {
   Surfel surfel;
   float depth = uintBitsToFloat((bits.x >> 10u) << 9u);
   vec2 within = vec2(float(bits.y & 0x7Fu), float((bits.y >> 7u) & 0x7Fu)) * (1.0 / 128.0);
-  vec2 ray = parameters.projection.zw + texel_step(level) * (vec2(texel) + within);
+  vec2 ray = corner + size * within;
   surfel.place = vec3(is_orthographic() ? ray : ray * depth, -depth);
   float relative = uintBitsToFloat(((bits.y >> 14u) << 10u) + floatBitsToUint(LEAST_AREA));
-  surfel.area = depth > 0.0 ? relative * footprint(depth, level) : 0.0;
+  surfel.area = depth > 0.0 ? relative * abs(size.x * size.y) * (is_orthographic() ? 1.0 : depth * depth) : 0.0;
   surfel.vector_area = surfel.area * unpack_signed(bits.z, DIRECTION_STEPS);
   surfel.radiance = uintBitsToFloat((bits.x & 0xFFu) << 23u) * unpack_signed(bits.w, RADIANCE_STEPS);
   return surfel;
+}
+
+Surfel unpack_surfel(uvec4 bits, ivec2 texel, int level)
+{
+  vec2 size = texel_step(level);
+  return unpack_surfel_of(bits, parameters.projection.zw + size * vec2(texel), size);
 }

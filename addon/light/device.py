@@ -72,6 +72,7 @@ VIEWS = np.dtype([
     ("draws", np.int32, 4),                         # groups; candidates of each; entries of the table; steps of a way
     ("odds", np.float32, 4),                        # chance of an emitter: x (power + z) + y, times its area
     ("world", np.float32, (4, 4)),                  # EEVEE's world light, as gather_views() has it
+    ("past", np.float32, (4, 4)),                   # the frame before: rows, world to view; scale, offset of base texels
 ])
 VIEWS_GLSL = f"""
 struct Views {{
@@ -84,6 +85,7 @@ struct Views {{
   ivec4 draws;
   vec4 odds;
   vec4 world[4];
+  vec4 past[4];
 }};
 """
 
@@ -127,10 +129,12 @@ PASSES = {
     "draw_base": Pass(("camera", "surfel", "views", "sight", "random", "form", "receiver_base", "draw"),
                       ("surfels", "emitters", "radiance", "table", "depths"), "irradiance_out"),
     "smooth": Pass(("camera", "surfel", "views", "bilateral", "smooth"), ("surfels", "irradiance"), "total_out"),
+    "reproject": Pass(("camera", "surfel", "views", "reproject"), ("surfels", "past_surfels", "past_light", "motion"), "known_out"),
+    "accumulate": Pass(("camera", "surfel", "bilateral", "accumulate"), ("surfels", "irradiance", "known"), "light_out"),
     "probe": Pass(("probe",), ("source",), "probed_out"),
     "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }
-SURFELS = "surfels", "surfels_out"        # the names of textures in this format:
+SURFELS = "surfels", "past_surfels", "surfels_out"  # the names of textures in this format:
 SURFEL_FORMAT = "RGBA32UI"
 
 

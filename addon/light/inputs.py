@@ -40,6 +40,7 @@ class Passes:
     depth: planar, metres; background 1e10 (anything above 1e9, or 0 and below, is no surface). normal: world space.
     diffuse_color: albedo. diffuse_direct: direct light without the albedo, as radiance of a white surface.
     emission: radiance. Radiance is in W sr^-1 m^-2, as linear as EEVEE writes it.
+    motion: (x, y) in pixels, y up, from where a surface is to where it was in the frame before; None where that is not known.
     """
 
     depth: np.ndarray
@@ -47,6 +48,7 @@ class Passes:
     diffuse_color: Triple
     diffuse_direct: Triple
     emission: Triple
+    motion: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -55,8 +57,8 @@ class Passes:
         return width, height
 
     def channels(self) -> dict[str, Triple]:
-        """The arrays of each pass, depth as a pass of one channel."""
-        passes = {field.name: getattr(self, field.name) for field in fields(self)}
+        """The arrays of each pass that light comes from, depth as a pass of one channel."""
+        passes = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "motion"}
         return passes | {"depth": (self.depth,)}
 
     def lacks_normals(self) -> bool:
@@ -94,8 +96,8 @@ class Draws:
 
     start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: draws of a base texel whose way is
     looked along, at most MOST_GROUPS; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and
-    more. visibility: whether surfaces hide what lies behind them. seed, strength: as in Settings. Raises ValueError for
-    anything else."""
+    more. visibility: whether surfaces hide what lies behind them. gathers: of which the picture is the mean. seed, strength: as
+    in Settings. Raises ValueError for anything else."""
 
     start: int
     groups: int = 16
@@ -104,12 +106,13 @@ class Draws:
     visibility: bool = True
     seed: int = 0
     strength: float = 1.0
+    gathers: int = 1
 
     def __post_init__(self):
         _check_start(self.start)
-        if min(self.groups, self.candidates, self.bounces) < 1:
-            raise ValueError(f"Groups, candidates and bounces are 1 or more, not {self.groups}, {self.candidates}, "
-                             f"{self.bounces}")
+        if min(self.groups, self.candidates, self.bounces, self.gathers) < 1:
+            raise ValueError(f"Groups, candidates, bounces and gathers are 1 or more, not {self.groups}, {self.candidates}, "
+                             f"{self.bounces}, {self.gathers}")
         if self.groups > MOST_GROUPS:
             raise ValueError(f"Groups are at most {MOST_GROUPS}, not {self.groups}")
 

@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import device
+from .history import FRAMES, REBUILT, STRIDE, History, accumulate, reproject
 from .inputs import Draws, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
@@ -28,16 +29,17 @@ BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed o
 KINDS = "emitters", "receivers"
 
 
-def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = None, *,
+def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = None, *, history: History | None = None,
                  progress=lambda stage, fraction: False, timings: dict[str, float] | None = None,
                  broken: dict[str, int] | None = None) -> np.ndarray:
     """The indirect light of the first view from the surfaces of all, after settings.bounces.
 
     views: at most device.MOST_VIEWS, all of one resolution. world: (4, 3), by how much EEVEE's world lights a white surface
     with normal n, world[0] + n @ world[1:], W sr^-1 m^-2; what surfaces cover of it is taken away, which needs
-    settings.visibility. Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1
-    m^-2, below 0 where the world's light goes; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as
-    gather_indirect() has them; broken speaks of the first view.
+    settings.visibility. history: what the frame before left, averaged with this one, which is left there in its place; an
+    empty one where there is none before. Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the
+    picture, W sr^-1 m^-2, below 0 where the world's light goes; 0 on background. progress, timings, broken, GpuUnavailable,
+    Cancelled: as gather_indirect() has them; broken speaks of the first view.
     """
     lap = stopwatch(timings)
 
@@ -45,17 +47,43 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
         if progress(stage, fraction):
             raise Cancelled
 
-    width, height = size = views[0].passes.size
+    main, size = views[0].camera, views[0].passes.size
     table = view_table(views, size, settings)
     if world is not None and settings.visibility:
         table["world"][:, :3] = world
     settings = replace(settings, start=start_of(settings, size))
     depths, emitters, receivers, channels = look(views, table, report, broken)
     lap("views", receivers)
-    base = pack(channels, views[0].passes, views[0].camera, settings)
+    base = pack(channels, views[0].passes, main, settings)
     for name in device.LIGHT_CHANNELS:
         del channels[name]
 
+    known = reproject(history, base, main, views[0].passes.motion, table) if history else None
+    count = settings.gathers if history is None or known else max(settings.gathers, REBUILT)
+    light = None
+    for number in range(count):
+        gathered = gather(replace(settings, seed=settings.seed + STRIDE * number), table, base, depths, emitters, receivers, lap,
+                          lambda stage, fraction: report(stage, (number + fraction) / count))
+        light = accumulate(base, light, gathered, 1, count, drift=False) if count > 1 else gathered
+    if history:
+        light = accumulate(base, known, light, count, (FRAMES - 1) * count, drift=True)
+        history.keep(base, light, main)
+
+    report("upsample", 1.0)
+    *_, across, up = base.boxes[0]
+    total = device.texture(across, up)
+    device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": light, "total_out": total},
+                    device.groups(across, up), table)
+    indirect = composite(channels, base, total)
+    lap("upsample", indirect)
+    width, height = size
+    picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
+    lap("read_back")
+    return picture
+
+
+def gather(settings, table, base, depths, emitters, receivers, lap, report):
+    """What the main view's base receives after all bounces, W m^-2: a texture of its size."""
     irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
     irradiance.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
     sent = radiate(emitters, irradiance, table)
@@ -76,16 +104,7 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
         "surfels": base.surfels, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
         base.parameters, lambda done: report("gather", done))
     lap("gather", gathered)
-
-    report("upsample", 1.0)
-    total = device.texture(across, up)
-    device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": gathered, "total_out": total},
-                    device.groups(across, up), table)
-    indirect = composite(channels, base, total)
-    lap("upsample", indirect)
-    picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
-    lap("read_back")
-    return picture
+    return gathered
 
 
 def look(views, table, report=lambda stage, fraction: None, broken=None):

@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, passes, relight, status, still, turns, views, wiring, world
+from . import checks, history, passes, relight, status, still, turns, views, wiring, world
 from .nodes import PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -36,6 +36,7 @@ class Shot:
     views: int = 0                   # how many the settings ask for
     camera: light.Camera = None
     settings: light.Settings = None
+    goes_on: bool = False            # whether frames of an animation are averaged
     problem: str = ""
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
@@ -79,7 +80,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
         if not shot.problem:
             frame = again.frame if again else source.frame_current
-            shot.settings = settings.light_settings(source.afterlight, frame)
+            shot.goes_on = not again and history.goes_on(source)
+            shot.settings = settings.light_settings(source.afterlight, frame, shot.goes_on)
             shot.camera = again.camera if again else self._look(depsgraph, source, shot.layer)
 
     def render(self, depsgraph):
@@ -149,7 +151,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         path = shot.again.path if shot.again else self.file
-        main = light.View(lambda: passes.load(path, shot.layer, shot.window), shot.camera)
+        main = light.View(lambda: passes.load(path, shot.layer, shot.window, shot.scene.frame_step), shot.camera)
         saved = shot.again.views if shot.again else self.views
         if shot.again and shot.views > shot.again.wanted:
             self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
@@ -162,7 +164,10 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         options = {"progress": self._progress, "timings": timed, "broken": broken}
         if isinstance(shot.settings, light.Draws):
             sky = world.light(depsgraph) if shot.scene.afterlight.use_world_shadow else None
-            picture = light.gather_views([main, *further], shot.settings, sky, **options)
+            past = history.before(shot.scene, shot.layer, shot.settings) if shot.goes_on else None
+            picture = light.gather_views([main, *further], shot.settings, sky, history=past, **options)
+            if past:
+                history.keep(shot.scene, shot.layer, shot.settings, past)
         else:
             picture = light.gather_indirect(main.passes, shot.camera, shot.settings, **options)
         for name, count in broken.items():

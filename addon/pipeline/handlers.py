@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, leftovers, nodes, passes, relight, status, still, turns, views, wiring, world
+from . import checks, history, leftovers, nodes, passes, relight, status, still, turns, views, wiring, world
 from .engine import AfterlightEngine
 
 
@@ -43,6 +43,7 @@ def _begin(scene):
     status.begin(scene)
     views.reset()
     still.begin()
+    history.begin(scene)
     world.forget()
     passes.discard_early()
     views.begin(scene)
@@ -67,6 +68,7 @@ def _end():
     """Undo what views and _mute() did to the file."""
     views.reset()
     still.begin()
+    history.end()
     world.forget()
     passes.discard_early()
     while _muted:

@@ -21,6 +21,18 @@ PASSES = (
     ("diffuse_direct", "use_pass_diffuse_direct", "Diffuse Direct", "RGB"),
     ("emission", "use_pass_emit", "Emission", "RGB"),
 )
+# Where things come from that move: for the average over frames. It costs EEVEE a look at the frames before and after.
+MOTION = ("motion", "use_pass_vector", "Vector", "XY")
+
+
+def averages_frames(settings):
+    """Whether the light of an animation's frames is averaged."""
+    return settings.use_history and settings.method == "RADIOSITY"
+
+
+def needed(settings):
+    """Of PASSES and MOTION, what a scene with these settings needs."""
+    return (*PASSES, MOTION) if averages_frames(settings) else PASSES
 
 
 def save(scene):
@@ -77,8 +89,8 @@ def render_result():
     return next((image for image in bpy.data.images if image.type == "RENDER_RESULT"), None)
 
 
-def load(path, layer, window):
-    """The passes of one view layer from a file that save() wrote.
+def load(path, layer, window, step=1):
+    """The passes of one view layer from a file that save() wrote. step: frames from the one before to this.
 
     window: (x, y, width, height) in pixels, from the bottom left: the part of the full frame that is rendered. A
     render border without crop leaves black around it in the file; it is cut off here.
@@ -92,7 +104,17 @@ def load(path, layer, window):
         raise Problem("The render has no pass {}. Press Repair in the Indirect Light panel, then render again",
                       _text(error)) from error
     found["depth"], = found["depth"]
-    return light.Passes(**found)
+    return light.Passes(**found, motion=_motion(cut, layer, step))
+
+
+def _motion(cut, layer, step):
+    """light.Passes.motion: None where the view layer has no such pass, and where it is empty, as with motion blur."""
+    _, _, name, axes = MOTION
+    try:
+        motion = tuple(cut(f"{layer}.{name}.{axis}") for axis in axes)
+    except KeyError:
+        return None
+    return tuple(step * axis for axis in motion) if any(axis.any() for axis in motion) else None
 
 
 def read(path, window):

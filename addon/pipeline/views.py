@@ -156,6 +156,11 @@ def keep_placed(scene, found):
                             "clearance": found.clearance}
 
 
+def forget_placed(scene):
+    """The next frame places the views anew."""
+    scout(scene).pop(PLACED, None)
+
+
 def prepare(scene):
     """The scout begins: no view is in the frame as yet, and all look as `scene` does."""
     still.begin_frame()

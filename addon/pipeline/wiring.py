@@ -6,7 +6,7 @@ import bpy
 from ..translations import say
 from . import nodes, views, world
 from .nodes import MARK
-from .passes import PASSES
+from .passes import MOTION, PASSES, needed
 
 ENGINE = "AFTERLIGHT"
 HELPER_NAME = ".Afterlight ({})"  # Blender leaves names with a leading dot out of its menus
@@ -57,7 +57,7 @@ def follow(scene):
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
         if layer.name in lit:
-            _switch_passes_on(layer)
+            _switch_passes(scene, layer, needed(scene.afterlight))
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
         helper.name = _helper_name(scene)
 
@@ -72,7 +72,7 @@ def disconnect(scene):
             nodes.unsplice(group, scene, helper)
     _restore_tree(scene)
     for layer in scene.view_layers:
-        _switch_passes_off(scene, layer)
+        _switch_passes(scene, layer, ())
     settings.helper = None
     if is_ours:
         _remove_helper(helper)
@@ -131,7 +131,7 @@ def faults(scene):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if views.faults(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
-    if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in PASSES)
+    if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in needed(scene.afterlight))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
     return found
@@ -245,21 +245,23 @@ def _restore_tree(scene):
     settings.compositing_was_off = False
 
 
-def _switch_passes_on(layer):
-    off = [switch for _, switch, _, _ in PASSES if not getattr(layer, switch)]
-    if off:
-        layer[MARK] = sorted({*layer.get(MARK, ()), *off})
-        for switch in off:
-            setattr(layer, switch, True)
-
-
-def _switch_passes_off(scene, layer):
-    """Switch off what we switched on, but for passes that the user's own nodes have come to use."""
-    ours = list(layer.get(MARK, ()))
-    if MARK in layer:
-        del layer[MARK]
+def _switch_passes(scene, layer, wanted):
+    """Switch on what is wanted of PASSES and MOTION, and off what we once switched on and is not, but for passes that the user's
+    own nodes have come to use."""
+    ours = set(layer.get(MARK, ()))
+    wanted = {switch for _, switch, _, _ in wanted}
     used = {output.name for node in nodes.pictures(scene.compositing_node_group, scene) if node.layer == layer.name
             for output in node.outputs if output.is_linked}
-    for _, switch, name, _ in PASSES:
-        if switch in ours and name not in used:
-            setattr(layer, switch, False)
+    for _, switch, name, _ in (*PASSES, MOTION):
+        if switch in wanted and not getattr(layer, switch):
+            ours.add(switch)
+            setattr(layer, switch, True)
+        elif switch in ours - wanted:
+            ours.discard(switch)
+            if name not in used:
+                setattr(layer, switch, False)
+    if ours != set(layer.get(MARK, ())):
+        if ours:
+            layer[MARK] = sorted(ours)
+        else:
+            del layer[MARK]
