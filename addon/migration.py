@@ -19,9 +19,14 @@ def _store_defaults(old):
     settings.store_all(old, DEFAULTS_OF_0_1_0)
 
 
+def _without_what_is_new(old):
+    """Pictures of older files stay what they were."""
+    old.use_history = False
+
+
 # The version that changed something, and what brings older settings up to it. A setting that gets a new name takes its
 # keyframes and drivers along.
-STEPS = (((0, 2, 0), _store_defaults),)
+STEPS = (((0, 2, 0), _store_defaults), ((0, 3, 0), _without_what_is_new))
 
 
 def migrate(old):

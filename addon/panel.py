@@ -115,6 +115,8 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
             column.prop(settings, "radius")
         else:
             column.prop(settings, "draws")
+            column.prop(settings, "accumulate")
+            column.prop(settings, "use_history")
             column.prop(settings, "bounces")
             column.prop(settings, "use_visibility")
             row = column.row()

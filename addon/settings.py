@@ -11,7 +11,7 @@ from . import light
 from .pipeline import status, views, wiring
 
 
-VERSION = 0, 2, 0          # the manifest's; what older ones stored otherwise: migration.py
+VERSION = 0, 3, 0          # the manifest's; what older ones stored otherwise: migration.py
 
 
 @dataclass(frozen=True)
@@ -107,8 +107,8 @@ PARAMETERS = (
     Parameter(
         "use_history", BoolProperty, "Average Frames",
         "In animations, average the light of each frame with that of the frames before, wherever they show the same surface. "
-        "Noise falls to a third at no further gather; the first frame of a render takes nine gathers instead of one. Light that "
-        "changes arrives within a few frames. Single renders are as they are without",
+        "Noise falls to a third and costs no time, but for a render's first frame, which takes nine gathers instead of one. Light "
+        "that changes arrives within a few frames. Single renders are as they are without",
         {"default": True, "options": set(), "update": _rewire}),
     Parameter(
         "accumulate", IntProperty, "Accumulate",

@@ -351,7 +351,7 @@ def misjudged(case, steps, count=20_000):
 TABLES = {
     "causes": causes, "draws": draws, "bounce_draws": bounce_draws, "steps": constant("STEPS", (8, 16, 24, 32)),
     "by_area": constant("BY_AREA", (0.1, 0.25, 0.5, 0.75, 1.0)), "emitter": constant("EMITTER", (1, 2, 4, 8)),
-    "receiver": constant("RECEIVER", (4, 8, 16, 32)), "smooth": constant("SMOOTH_RADIUS", (0, 1, 2, 3, 4)),
+    "receiver": constant("RECEIVER", (4, 8, 16, 32)), "smooth": constant("SMOOTH_STEPS", ((), (1,), (1, 2), (1, 2, 4))),
     "depths": constant("DEPTHS_ACROSS", (80, 160, 320)), "margin": constant("MARGIN", (0.0, 0.01, 0.02, 0.05)),
     "thickness": constant("THICKNESS", (0.0, 0.01, 0.03, 0.1, 1.0)), "continuous": constant("CONTINUOUS", (0.1, 0.2, 0.3, 0.5)),
     "near": constant("NEAR_SHARE", (0, 2, 4, 8)),

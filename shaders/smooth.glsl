@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth: the noise of the draws out of the base's irradiance, by a mean over the texels around that lie on the same
-// surface. No noise may take away more of the world's light than there is.
+// Smooth: the noise of the draws out of the base's irradiance, by means over the texels around that lie on the same surface, twice,
+// the second time of texels two apart (the wavelet transform "a trous"; H. Dammertz and others, HPG 2010). No noise may take away
+// more of the world's light than there is.
 
-#define SMOOTH_RADIUS 3
+// Of a cubic spline at whole numbers, over its greatest.
+float spline(int offset)
+{
+  return offset == 0 ? 1.0 : abs(offset) == 1 ? 2.0 / 3.0 : 1.0 / 6.0;
+}
 
 void main()
 {
@@ -10,13 +15,15 @@ void main()
   if (!is_inside(texel, level_size(0))) {
     return;
   }
+  int step = parameters.span.x;
+  bool is_last = parameters.span.y != 0;
   Surfel receiver = unpack_surfel(texelFetch(surfels, texel, 0), texel, 0);
   vec4 sum = texelFetch(irradiance, texel, 0);
   float weights = 1.0;
   vec3 normal = direction(receiver.vector_area);
-  for (int y = -SMOOTH_RADIUS; y <= SMOOTH_RADIUS; y++) {
-    for (int x = -SMOOTH_RADIUS; x <= SMOOTH_RADIUS; x++) {
-      ivec2 tap = texel + ivec2(x, y);
+  for (int y = -2; y <= 2; y++) {
+    for (int x = -2; x <= 2; x++) {
+      ivec2 tap = texel + step * ivec2(x, y);
       if ((x == 0 && y == 0) || receiver.area <= 0.0 || !is_inside(tap, level_size(0))) {
         continue;
       }
@@ -26,14 +33,13 @@ void main()
       }
       float height = dot(normal, surfel.place - receiver.place);
       float cosine = dot(normal, direction(surfel.vector_area));
-      float near = exp(-float(x * x + y * y) / float(SMOOTH_RADIUS * SMOOTH_RADIUS));
-      float weight = near * (bilateral_weight(vec4(height), vec4(cosine), surfel.area).x - LEAST_WEIGHT);
+      float weight = spline(x) * spline(y) * (bilateral_weight(vec4(height), vec4(cosine), surfel.area).x - LEAST_WEIGHT);
       sum += weight * texelFetch(irradiance, tap, 0);
       weights += weight;
     }
   }
   sum /= weights;
-  if (views.odds.z > 0.0) {
+  if (is_last && views.odds.z > 0.0) {
     vec3 world = PI * world_light(to_world(0, normal)) / max(parameters.output_scale.x, 1.0);
     sum.rgb = max(sum.rgb, -max(world, vec3(0.0)));
   }

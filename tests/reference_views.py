@@ -23,7 +23,7 @@ SLOPE = 2.0
 STEEPEST = 1.1
 DEPTH_TOLERANCE = 0.02
 SLOPE_TOLERANCE = 2.0
-SMOOTH_RADIUS = 3
+SMOOTH_STEPS = 1, 2
 
 
 @dataclass
@@ -261,21 +261,23 @@ def share_free(eyes, places, normals, emitters, steps, jitters=16):
 
 
 def smooth(level, irradiance, world=None):
-    """(H, W, 3): a mean over the texels around that lie on the same surface. level: reference.Level of the base. world: (H, W, 3),
-    the light that there is of it: no more than that is taken away."""
+    """(H, W, 3): means over the texels around that lie on the same surface, one and two texels apart. level: reference.Level of the
+    base. world: (H, W, 3), the light that there is of it: no more than that is taken away."""
     height, width = level.area.shape
     normal, surface = direction(level.vector_area), level.area > 0
-    sum_, weights = irradiance.copy(), np.ones(level.area.shape)
-    reach = range(-SMOOTH_RADIUS, SMOOTH_RADIUS + 1)
-    for dx, dy in ((dx, dy) for dy in reach for dx in reach if dx or dy):
-        here = slice(max(0, -dy), max(0, height - max(0, dy))), slice(max(0, -dx), max(0, width - max(0, dx)))
-        there = slice(max(0, dy), max(0, height + min(0, dy))), slice(max(0, dx), max(0, width + min(0, dx)))
-        distance = dot(normal[here], level.place[there] - level.place[here])
-        flatness = 1 / (1 + FLATNESS_SHARPNESS * distance ** 2 / np.where(surface[there], level.area[there], 1))
-        likeness = np.maximum(dot(normal[here], normal[there]), 0) ** NORMAL_POWER
-        near = np.exp(-(dx * dx + dy * dy) / SMOOTH_RADIUS ** 2)
-        weight = np.where(surface[here] & surface[there], near * flatness * likeness, 0)
-        sum_[here] += weight[..., None] * irradiance[there]
-        weights[here] += weight
-    mean = sum_ / weights[..., None]
+    spline = {0: 1.0, 1: 2 / 3, 2: 1 / 6}
+    mean = irradiance
+    for step in SMOOTH_STEPS:
+        total, weights = mean.copy(), np.ones(level.area.shape)
+        for x, y in ((x, y) for y in range(-2, 3) for x in range(-2, 3) if x or y):
+            dx, dy = step * x, step * y
+            here = slice(max(0, -dy), max(0, height - max(0, dy))), slice(max(0, -dx), max(0, width - max(0, dx)))
+            there = slice(max(0, dy), max(0, height + min(0, dy))), slice(max(0, dx), max(0, width + min(0, dx)))
+            distance = dot(normal[here], level.place[there] - level.place[here])
+            flatness = 1 / (1 + FLATNESS_SHARPNESS * distance ** 2 / np.where(surface[there], level.area[there], 1))
+            likeness = np.maximum(dot(normal[here], normal[there]), 0) ** NORMAL_POWER
+            weight = np.where(surface[here] & surface[there], spline[abs(x)] * spline[abs(y)] * flatness * likeness, 0)
+            total[here] += weight[..., None] * mean[there]
+            weights[here] += weight
+        mean = total / weights[..., None]
     return mean if world is None else np.maximum(mean, -np.pi * np.maximum(world, 0))

@@ -475,10 +475,7 @@ def test_smoothing_agrees_with_float64(light, name, world):
     table = light.views.view_table(views, views[0].passes.size, chosen)
     table["world"][:, :3], table["odds"][2] = world * WORLD, world
     noise = np.random.default_rng(6).random((*level.area.shape, 4)).astype(np.float32) - np.float32(4 * world)
-    total = light.device.texture(*noise.shape[1::-1])
-    light.device.dispatch("smooth", base.parameters, {
-        "surfels": base.surfels, "irradiance": light.device.texture(*noise.shape[1::-1], data=noise), "total_out": total},
-        light.device.groups(*noise.shape[1::-1]), table)
+    total = light.views.smooth(base, light.device.texture(*noise.shape[1::-1], data=noise), table)
     measured = np.array(total.read())[..., :3]
     lit = views_64.world_light(WORLD, normal).reshape(*level.area.shape, 3) if world else None
     expected = views_64.smooth(level, noise[..., :3].astype(float), lit)

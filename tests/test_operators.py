@@ -16,7 +16,8 @@ import extension
 def test_settings_go_to_other_scenes(scene, addon):
     settings, names = scene.afterlight, [parameter.name for parameter in addon.settings.PARAMETERS]
     mine = dict(method="RADIOSITY", strength=0.5, start="QUARTER", samples=100, radius=9, draws=5, bounces=2,
-                use_visibility=False, use_world_shadow=False, views="AUTOMATIC", view_count=2, seed=3, use_animated_seed=True)
+                use_visibility=False, use_world_shadow=False, views="AUTOMATIC", view_count=2, accumulate=2,
+                use_history=False, seed=3, use_animated_seed=True)
     assert sorted(mine) == sorted(names)
     assert not bpy.ops.afterlight.copy_settings.poll(), "there is no other scene"
     for name, value in mine.items():
@@ -158,8 +159,8 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
     keyed = {"strength": (1.0, 0.5, 0.25), "start": ("QUARTER", "HALF", "FULL"), "samples": (16, 32, 64),
              "radius": (4, 6, 8), "seed": (1, 5, 9), "use_animated_seed": (False, True, False)}
     radiosity = {"draws": (1, 2, 3), "bounces": (1, 2, 3), "use_visibility": (True, False, True),
-                 "use_world_shadow": (True, True, False)}
-    wiring = {"method", "views", "view_count"}  # they decide which scenes there are, and stay as they are
+                 "use_world_shadow": (True, True, False), "accumulate": (1, 2, 3)}
+    wiring = {"method", "views", "view_count", "use_history"}  # they decide which scenes there are, and stay as they are
     assert keyed.keys() | radiosity.keys() | wiring == {parameter.name for parameter in addon.settings.PARAMETERS}
     for name, values in keyed.items():
         for frame, value in enumerate(values, 1):
@@ -198,8 +199,8 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
             assert settings.keyframe_insert(name, frame=frame), name
     scene.frame_set(1)
     bpy.ops.render.render(animation=True)
-    assert [(each.groups, each.bounces, each.visibility) for each, _ in seen] == [
-        (1, 1, True), (2, 2, False), (3, 3, True)]
+    assert [(each.groups, each.bounces, each.visibility, each.gathers) for each, _ in seen] == [
+        (1, 1, True, 1), (2, 2, False, 2), (3, 3, True, 3)]
     worlds = [world for _, world in seen]
     assert worlds[2] is None and worlds[1] == pytest.approx(2 * worlds[0]) and worlds[0][0].min() > 0, "as in each frame"
     assert not worlds[0][1:].any(), "one colour"

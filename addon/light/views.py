@@ -26,6 +26,7 @@ STEPS = 24                 # of the way to an emitter at which it is asked wheth
 ENTRIES = 1 << 18          # of the table that emitters are drawn from
 BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
 BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
+SMOOTH_STEPS = 1, 2        # texels between the taps of each pass that smooths
 KINDS = "emitters", "receivers"
 
 
@@ -70,11 +71,7 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
         history.keep(base, light, main)
 
     report("upsample", 1.0)
-    *_, across, up = base.boxes[0]
-    total = device.texture(across, up)
-    device.dispatch("smooth", base.parameters, {"surfels": base.surfels, "irradiance": light, "total_out": total},
-                    device.groups(across, up), table)
-    indirect = composite(channels, base, total)
+    indirect = composite(channels, base, smooth(base, light, table))
     lap("upsample", indirect)
     width, height = size
     picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
@@ -105,6 +102,19 @@ def gather(settings, table, base, depths, emitters, receivers, lap, report):
         base.parameters, lambda done: report("gather", done))
     lap("gather", gathered)
     return gathered
+
+
+def smooth(base, light, table):
+    """The base's irradiance with less noise: a texture of its size."""
+    *_, across, up = base.boxes[0]
+    block = base.parameters.copy()
+    for step in SMOOTH_STEPS:
+        block["span"][:2] = step, step == SMOOTH_STEPS[-1]
+        total = device.texture(across, up)
+        device.dispatch("smooth", block, {"surfels": base.surfels, "irradiance": light, "total_out": total},
+                        device.groups(across, up), table)
+        light = total
+    return light
 
 
 def look(views, table, report=lambda stage, fraction: None, broken=None):

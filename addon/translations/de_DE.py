@@ -54,6 +54,18 @@ TEXTS = {
         "In jedem Einzelbild ein anderes Muster nehmen, damit das Rauschen bei bewegter Kamera nicht am Bild klebt. "
         "Kostet keine Zeit",
 
+    "Average Frames": "Einzelbilder mitteln",
+    "In animations, average the light of each frame with that of the frames before, wherever they show the same surface. "
+    "Noise falls to a third and costs no time, but for a render's first frame, which takes nine gathers instead of one. Light "
+    "that changes arrives within a few frames. Single renders are as they are without":
+        "In Animationen das Licht jedes Einzelbildes mit dem der vorigen mitteln, wo sie dieselbe Fläche zeigen. Das Rauschen "
+        "sinkt auf ein Drittel und kostet keine Zeit, bis auf das erste Bild eines Renderns, für das neunmal gesammelt wird statt "
+        "einmal. Licht, das sich ändert, kommt in wenigen Bildern an. Einzelne Bilder bleiben, wie sie ohne sind",
+    "Accumulate": "Aufsummieren",
+    "Gathers that each picture is the mean of. Time grows in proportion, noise falls with the square root":
+        "So viele Male wird für jedes Bild gesammelt und gemittelt. Die Zeit wächst im gleichen Verhältnis, das Rauschen sinkt "
+        "mit der Wurzel",
+
     "Shadow World": "Welt abschatten",
     "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of one "
     "colour or of an environment picture; needs Visibility, and costs nothing":
