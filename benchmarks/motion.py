@@ -23,12 +23,14 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "sample_blends"))
 
 import session  # noqa: E402
+from clip import frame_range  # noqa: E402
 
 from . import accuracy, candidates, motion_measures, motion_report, references  # noqa: E402
 
 FOLDER = ROOT / "sample_blends" / "moving"
 SHOTS = "pillars", "walking_shadow", "lamp_switched", "creature"
-WAYS = "eevee", "tracing", "tracing-best", "production", "production+history"
+ALONE = "eevee", "tracing", "tracing-best"     # ways of EEVEE's
+WAYS = *ALONE, "production", "production+history"
 BOUNCES = 4
 
 
@@ -170,11 +172,6 @@ def rendered(path, way, plain, seconds, options, afterlight):
         spent, frames = job(scene, layers=way.traced)
     look = diffuse if way.traced else lambda frame: frame["Combined"]
     return np.array([look(frame) - look(without) for frame, without in zip(frames, plain, strict=True)]), spent
-
-
-def frame_range(text):
-    first, last = (int(number) for number in text.split("-"))
-    return first, last
 
 
 def parse(arguments):

@@ -36,6 +36,12 @@ class Shot:
         """The mean indirect light of the shot, the unit of all that is told."""
         return float(self.truth.mean(dtype=float))
 
+    @property
+    def steady(self):
+        """Indices of all changes but that of a switch: it is seen as one, and what it leaves behind is lag and trails."""
+        switch = measures.switch(self.truth)
+        return np.array([index for index in range(len(self.tracks)) if index + 1 != switch])
+
     def errors(self, name):
         return self.light[name] - self.truth
 
@@ -47,13 +53,13 @@ class Shot:
 
     def row(self, name):
         light, errors = self.light[name], self.errors(name)
-        variance = measures.flicker(errors, self.noise, self.tracks).mean() / self.mean ** 2
+        variance = measures.flicker(errors, self.noise, self.tracks)[self.steady].mean() / self.mean ** 2
         return (f"| {self.name} | {name} | {light.mean(dtype=float) / self.mean:.3f} | {np.abs(errors).mean(dtype=float) / self.mean:.3f} "
                 f"| {np.sqrt(max(variance, 0)):.4f} | {variance:.6f} | {self.lag(name)} | {self.trails(name)} "
                 f"| {self.seconds[name] / len(light):.1f} |")
 
     def row_of_noise(self):
-        own = measures.changes(self.noise, self.tracks).mean() / self.mean ** 2
+        own = measures.changes(self.noise, self.tracks)[self.steady].mean() / self.mean ** 2
         return (f"| {self.name} | *Cycles' own noise, taken off above* | | {np.abs(self.noise).mean(dtype=float) / self.mean:.3f} "
                 f"| {np.sqrt(own):.4f} | {own:.6f} | | | |")
 
@@ -102,7 +108,9 @@ class Shot:
                 shown = axes[row, column].imshow(picture / self.mean, cmap="RdBu_r", vmin=-reach, vmax=reach)
                 axes[row, column].set_title(rest[row - 1].strip(), fontsize=7)
                 if column == len(titles) - 1:
-                    figure.colorbar(shown, ax=axes[row, :], shrink=0.8, label="of the shot's mean light")
+                    bar = figure.colorbar(shown, ax=axes[row, :], shrink=0.8)
+                    bar.set_label("of the shot's mean light", fontsize=7)
+                    bar.ax.tick_params(labelsize=7)
         for each in axes.flat:
             each.set_xticks([])
             each.set_yticks([])
@@ -124,6 +132,6 @@ def page(options, rows):
         f"{width} x {height}, EEVEE with {options.samples} samples, Cycles with {2 * options.truth_samples} and four diffuse bounces. All is over "
         "the mean indirect light of the shot. Energy: the mean light. Error: relative L1, of the reference's noise too. Flicker: root mean "
         "square change of the error between frames, along the true motion, where both frames show the surface and no edge is within a "
-        "pixel; the reference's own noise is taken off. Variance: its square. Lag: frames after a switch until 95 % of the change has "
+        "pixel, but for the frame of a switch; the reference's own noise is taken off. Variance: its square. Lag: frames after a switch until 95 % of the change has "
         "arrived. Trails: where history worsens the mean error of 8 x 8 pixels most.", "",
         HEAD, *rows, ""])

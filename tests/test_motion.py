@@ -101,7 +101,7 @@ def test_trails_are_where_history_is_worse():
 
 @pytest.fixture
 def options(tmp_path):
-    return motion.parse(["pillars", "--size", "64x36", "--samples", "1", "--frames", "5-7"])
+    return motion.parse(["pillars", "--size", "64x36", "--samples", "1", "--frames", "5-6"])
 
 
 def test_a_shot_is_rendered_in_one_job_and_its_tracks_are_true(afterlight, options):
@@ -109,15 +109,14 @@ def test_a_shot_is_rendered_in_one_job_and_its_tracks_are_true(afterlight, optio
     scene = motion.opened(options.paths[0], options, afterlight)
     scene.view_layers[0].use_pass_vector = scene.view_layers[0].use_pass_position = True
     _, frames = motion.job(scene, layers=True)
-    assert len(frames) == 3
-    surfaces = [motion.surface(frame) for frame in frames]
-    for before, after, one, two in zip(frames, frames[1:], surfaces, surfaces[1:]):
-        track = measures.track(one, two)
-        apart = np.linalg.norm(after["Position"][track.now] - before["Position"][track.then], axis=-1)
-        pixel = after["Depth"][track.now][..., 0] * 36 / 20 / 64   # the lens of 20 mm on 36
-        assert len(apart) > 400 and np.percentile(apart / pixel, 90) < 2
-        unmoved = np.linalg.norm(after["Position"] - before["Position"], axis=-1)[track.now]
-        assert np.median(unmoved) > 2 * np.median(apart)
+    assert len(frames) == 2
+    before, after = frames
+    track = measures.track(*map(motion.surface, frames))
+    apart = np.linalg.norm(after["Position"][track.now] - before["Position"][track.then], axis=-1)
+    pixel = after["Depth"][track.now][..., 0] * 36 / 20 / 64   # the lens of 20 mm on 36
+    assert len(apart) > 400 and np.percentile(apart / pixel, 90) < 2
+    unmoved = np.linalg.norm(after["Position"] - before["Position"], axis=-1)[track.now]
+    assert np.median(unmoved) > 2 * np.median(apart)
 
 
 def test_history_that_is_not_there_is_said(afterlight, options):
