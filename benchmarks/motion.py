@@ -114,7 +114,7 @@ def read(path):
         for name in {name.rpartition(".")[0] for name in channels}:
             parts = [f"{name}.{axis}" if name else axis for axis in axes]
             if all(part in channels for part in parts):
-                found.setdefault(name.partition(".")[2] or "Combined", np.stack([channels[part] for part in parts], -1))
+                found.setdefault(name.rpartition(".")[2] or "Combined", np.stack([channels[part] for part in parts], -1))
     return found
 
 

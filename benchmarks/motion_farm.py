@@ -42,6 +42,7 @@ def sent(path, way, folder, options, afterlight, seed=0):
     file = folder / f"seed_{seed}.blend"
     with way.mode(scene):
         scene.afterlight.seed = seed
+        scene.frame_set(scene.frame_start)
         bpy.ops.render.render(scene=scene.name)
         bpy.ops.wm.save_as_mainfile(filepath=str(file), copy=True)
     return file

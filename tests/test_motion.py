@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from benchmarks import motion, motion_measures as measures
+from benchmarks import motion, motion_measures as measures, motion_report
 
 SIZE = 40, 64
 RIGHT, DOWN = 3, 2           # pixels a frame
@@ -97,6 +97,33 @@ def test_trails_are_where_history_is_worse():
     with_history = without * 0.5
     with_history[2, 8:16, 24:32] = -0.6
     assert measures.trails(with_history, without) == (pytest.approx(0.5), 2, 8, 24)
+
+
+def test_rows():
+    """A lamp goes out at frame 7 of 5 to 12. History arrives late at what is shown without, and leaves a trail of it."""
+    draw = np.random.default_rng(3).normal
+    truth = np.where(np.arange(8) < 2, 4.0, 1.0)[:, None, None, None] * np.ones((8, *SIZE, 3))
+    halves = truth + draw(scale=0.2, size=(2, *truth.shape))
+    wall = surface()
+    shot = motion_report.Shot("shot", 5, halves.mean(0), (halves[0] - halves[1]) / 2, [measures.track(wall, wall)] * 7)
+    shown = 0.9 * truth + draw(scale=0.1, size=truth.shape)
+    late = 0.9 * truth
+    late[2] += 0.7
+    shot.add("EEVEE", np.zeros_like(truth), 8)
+    shot.add("without", shown, 16)
+    shot.add("with", late, 24, "without")
+    shot.failures["other"] = "no reason"
+    rows = {cells[1]: cells[2:] for cells in ([cell.strip() for cell in row.strip("|").split("|")] for row in shot.rows())}
+    mean = 1.75
+    assert rows["EEVEE"][:2] == ["0.000", "1.000"] and abs(float(rows["EEVEE"][3])) < 0.001   # a switch is no flicker
+    energy, error, flicker, variance, lag, trails, seconds = rows["without"]
+    assert (energy, lag, trails, seconds) == ("0.900", "0", "–", "2.0")
+    assert float(variance) == pytest.approx(0.02 / mean ** 2, rel=0.1) and float(flicker) == pytest.approx(float(variance) ** 0.5, rel=0.01)
+    energy, error, flicker, variance, lag, trails, seconds = rows["with"]
+    assert float(error) == pytest.approx((2 * 0.4 + 0.6 + 5 * 0.1) / 8 / mean, rel=0.05) and lag == "1"
+    assert "(frame 7, " in trails and float(trails.split()[0]) == pytest.approx(0.5 / mean, rel=0.15)
+    assert rows["other"][0] == "failed: no reason"
+    assert float(rows["*Cycles' own noise, taken off above*"][3]) == pytest.approx(0.04 / mean ** 2, rel=0.05)
 
 
 @pytest.fixture
