@@ -10,7 +10,7 @@ WIDTH, DEPTH, HEIGHT = 4.4, 3.6, 2.4       # x and y from 0
 
 
 def build(scene):
-    shot(scene, exposure=0.4)
+    shot(scene, exposure=-0.1)
     _room()
     lamp = light_data("AREA", "Ceiling lamp", (1, 0.88, 0.72), 75, shape="RECTANGLE", size=1.0, size_y=0.6)
     place("Ceiling lamp", lamp, None, (2.2, 1.7, HEIGHT - 0.05), aim((0, 0, 1), (0, 0, 0)))
