@@ -14,7 +14,7 @@ def build(scene):
     place("Reading lamp", bright, None, (3.3, 1.9, 1.3), aim((3.3, 1.9, 1.3), (4.2, 2.9, 2.4)))
     animate(bright, "energy", {1: 320, SWITCHED: 0}, "CONSTANT")
     dim = light_data("AREA", "Window", (0.60, 0.76, 1), 18, shape="RECTANGLE", size=1.2, size_y=1.1)
-    place("Window", dim, None, (0.03, 2.2, 1.5), aim((0, 0, 0), (1, 0.1, -0.4)))
+    place("Window", dim, None, (0.06, 2.2, 1.5), aim((0, 0, 0), (1, 0, 0)))
     camera(scene, (0.5, 0.3, 1.5), (2.9, 3.4, 0.95), 20)
 
 
