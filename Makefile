@@ -19,6 +19,9 @@ package: setup   ## dist/afterlight-<version>.zip, to be installed in Blender
 demo: package    ## before and after pictures of a sample scene; make demo DEMO=--all for all of them
 	$(python) sample_blends/demo.py $(DEMO)
 
+clip: package    ## moving shots by EEVEE alone and with Afterlight, as animated pictures; make clip CLIP=pillars for one
+	$(python) sample_blends/clip.py $(CLIP)
+
 samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
 
@@ -31,6 +34,9 @@ speed: setup     ## the last of these: the light alone, pass by pass, on this ma
 accuracy: package ## error beside EEVEE's own GI and Cycles, and where it comes from; half an hour the first time
 	$(python) -m benchmarks.accuracy --out docs/accuracy --page docs/accuracy.md
 
+motion: package  ## error, flicker, lag and trails in moving shots; make motion MOTION='pillars --frames 1-8' for less
+	$(python) -m benchmarks.motion --page docs/motion.md --sheet build/motion/sheet.png $(MOTION)
+
 soak: package    ## 300 frames in one process: does memory grow, does anything stay behind? Half an hour; needs Linux
 	$(python) -m benchmarks.soak
 
@@ -38,4 +44,4 @@ clean:           ## remove what was made, but for .venv and the downloaded wheel
 	rm -rf dist build .pytest_cache .hypothesis
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test desktop-test package demo samples bench speed accuracy soak clean
+.PHONY: help setup test desktop-test package demo clip samples bench speed accuracy motion soak clean

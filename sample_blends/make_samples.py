@@ -16,6 +16,7 @@ sys.path.insert(0, str(HERE))               # Blender's -P does not do it
 import session  # noqa: E402
 
 SAMPLES = ("cornell_box", "sunlit_room", "many_lights", "emissive_sign", "sculpture", "apartment", "street", "desk", "corridor")
+MOVING = ("pillars", "walking_shadow", "lamp_switched", "creature")  # shots; apart, as the others are measured by the folder
 LARGEST = 2_000_000                         # bytes; the samples are kept in the repository
 
 
@@ -38,19 +39,21 @@ def make(name, folder, plain):
 
 
 def main():
+    every = SAMPLES + MOVING
     parser = argparse.ArgumentParser(description="Write Afterlight's sample scenes.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of: {', '.join(SAMPLES)}; all without")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of: {', '.join(every)}; all without")
     parser.add_argument("--plain", action="store_true", help="without Afterlight, for a look at the bare scenes")
-    parser.add_argument("--folder", type=Path, default=HERE, help="where to write; beside this script without")
+    parser.add_argument("--folder", type=Path, default=HERE, help="where to write; beside this script without, and the moving shots in moving/ there")
     options = parser.parse_args(session.arguments())
-    if unknown := set(options.names) - set(SAMPLES):
-        parser.error(f"no sample is called {', '.join(sorted(unknown))}; there are {', '.join(SAMPLES)}")
+    if unknown := set(options.names) - set(every):
+        parser.error(f"no sample is called {', '.join(sorted(unknown))}; there are {', '.join(every)}")
     if not options.plain:
         session.enable_afterlight()
     folder = options.folder.resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in options.names or SAMPLES:
-        path = make(name, folder, options.plain)
+    for name in options.names or every:
+        into = folder / "moving" if name in MOVING else folder
+        into.mkdir(parents=True, exist_ok=True)
+        path = make(name, into, options.plain)
         print(f"{path}: {path.stat().st_size / 1000:.0f} kB")
 
 

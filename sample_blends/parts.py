@@ -4,6 +4,7 @@
 from math import radians
 
 import bpy
+from bpy_extras import anim_utils
 from mathutils import Vector
 
 
@@ -140,3 +141,24 @@ def wall(name, material, start, end, height, openings=(), thick=0.1):
             if top > bottom:
                 first, second = (origin + low, across - side), (origin + high, across + side)
                 box(name, material, (*first[::1 - 2 * along], bottom), (*second[::1 - 2 * along], top))
+
+
+def shot(scene, frames=24, **settings):
+    """render_settings() of a moving shot: frames 1 to `frames`, 24 a second."""
+    render_settings(scene, **settings)
+    scene.frame_start, scene.frame_end = 1, frames
+    scene.render.fps = 24
+    # The world is black: on a processor its probe costs more than all else in a small frame.
+    scene.world.probe_resolution = "128"
+
+
+def animate(thing, path, keys, interpolation="LINEAR"):
+    """Keyframes on the property `path` of an object, bone, lamp or shape: {frame: value}, a vector's or a number."""
+    for frame, value in keys.items():
+        setattr(thing, path, value)
+        thing.keyframe_insert(path, frame=frame)
+    data, owner = thing.id_data.animation_data, thing.path_from_id(path)
+    for curve in anim_utils.action_get_channelbag_for_slot(data.action, data.action_slot).fcurves:
+        if curve.data_path == owner:
+            for point in curve.keyframe_points:
+                point.interpolation = interpolation
