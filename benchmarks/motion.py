@@ -97,6 +97,7 @@ def job(scene, layers=False):
     image.color_depth, image.exr_codec = "32", "ZIP"
     with tempfile.TemporaryDirectory(prefix="afterlight-motion-") as folder:
         scene.render.filepath = str(Path(folder) / "frame_####.exr")
+        scene.frame_set(scene.frame_end)  # an animation that begins at the current frame passes for F12 in its first
         start = time.perf_counter()
         bpy.ops.render.render(animation=True, scene=scene.name)
         seconds = time.perf_counter() - start
