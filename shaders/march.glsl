@@ -2,8 +2,9 @@
 // March: where a ray meets a surface that some view shows, and what comes back from there.
 
 #define MARCH_STEPS 32        // at most, along what a view has in frame of a ray
+#define LIFT 0.05             // of that: where rays begin
 #define MARCH_TEXELS 6.0      // of the depth map in one step, unless that takes more of them
-#define ENDLESS 1e5           // times its depth in a view where it begins: so far a ray goes that stays in frame
+#define REFINEMENTS 8         // more halvings of a step in which something is met, to tell where
 
 // The part of a ray, metres from its start, that a view has in frame, within `span`. start, rate: its projection there, and by how
 // much that changes in a metre.
@@ -19,19 +20,18 @@ vec2 shown_span(int view, vec4 start, vec4 rate, vec2 span)
     span.y = slope < 0.0 ? min(span.y, at) : span.y;
     span.y = slope == 0.0 && inside <= 0.0 ? -1.0 : span.y;
   }
-  span.y = min(span.y, span.x + ENDLESS * max(start.z + span.x * rate.z, NEAREST));
   return span;
 }
 
 // Metres to the first surface that some view sees the ray pass through; 0 where there is none. Steps are even in the view's
-// picture. least: nearer than this nothing is met.
-float first_hit(vec3 place, vec3 towards, float least, float jitter)
+// picture. own: nearer than this a ray that comes out from behind a surface has begun on it.
+float first_hit(vec3 place, vec3 towards, float own, float jitter)
 {
-  float nearest = FARTHEST;
+  float reach = views.odds.w, nearest = reach;
   for (uint left = all_views(); left != 0u; left &= left - 1u) {
     int view = findLSB(left);
     vec4 start = projection_of(view, place), rate = projection_of(view, place + towards) - start;
-    vec2 span = shown_span(view, start, rate, vec2(least, nearest));
+    vec2 span = shown_span(view, start, rate, vec2(LIFT * own, nearest));
     if (span.x >= span.y) {
       continue;
     }
@@ -39,23 +39,31 @@ float first_hit(vec3 place, vec3 towards, float least, float jitter)
     float texels = length(first.xy / max(first.w, NEAREST) - last.xy / max(last.w, NEAREST));
     int steps = int(clamp(ceil(texels / MARCH_TEXELS), 4.0, float(MARCH_STEPS)));
     float before = span.x;
-    bool was_free = gap_at(view, first) > 0.0;
+    // The main view shows where the ray begins: it comes out from behind something only once it has gone there.
+    bool was_free = gap_at(view, first) > 0.0, has_begun = view != 0 || was_free;
     for (int k = 0; k <= steps; k++) {
       float share = min((float(k) + jitter) / float(steps), 1.0);
       float at = span.x + (span.y - span.x) * share * first.w / mix(last.w, first.w, share);
       bool is_free = gap_at(view, start + rate * at) > 0.0;
       if (is_free != was_free) {
         float low = before, high = at;
-        if (passes_through(view, start, rate, low, high, at - before)) {
+        if (passes_through(view, start, rate, low, high, at - before) && (was_free || (has_begun && low > own))) {
+          for (int more = 0; more < REFINEMENTS; more++) {
+            float middle = 0.5 * (low + high);
+            bool is_before = (gap_at(view, start + rate * middle) > 0.0) == was_free;
+            low = is_before ? middle : low;
+            high = is_before ? high : middle;
+          }
           nearest = 0.5 * (low + high);
           break;
         }
       }
       before = at;
       was_free = is_free;
+      has_begun = has_begun || is_free;
     }
   }
-  return nearest < FARTHEST ? nearest : 0.0;
+  return nearest < reach ? nearest : 0.0;
 }
 
 // Radiance that leaves a place on a surface against `towards`: of the views that show it from that side, each by how fine it

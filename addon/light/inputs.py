@@ -88,6 +88,20 @@ class View:
         return self.source() if callable(self.source) else self.source
 
 
+@dataclass(eq=False)
+class Gloss:
+    """How the surfaces of the picture shine, rows top first, and what gather_views() finds them to show.
+
+    color: EEVEE's Glossy Color, the share of the light that the lobe sends back, (H, W) float32 each. roughness: (H, W) float32,
+    as Blender's materials have it, 0 to 1. picture: (H, W, 3) float32, bottom row first: the indirect light that they reflect, to
+    add to the picture, W sr^-1 m^-2; below 0 where the world's goes. None until it is gathered.
+    """
+
+    color: Triple
+    roughness: np.ndarray
+    picture: np.ndarray | None = None
+
+
 @dataclass(frozen=True)
 class Draws:
     """Settings of the light between several views.

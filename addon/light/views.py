@@ -15,8 +15,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import device
-from .inputs import Draws, View
+from . import device, glossy
+from .inputs import Draws, Gloss, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
 DEPTHS_ACROSS = 320        # least texels along a depth map's longer side, and emitters along the main view's
@@ -30,13 +30,13 @@ KINDS = "emitters", "receivers"
 
 def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = None, *,
                  progress=lambda stage, fraction: False, timings: dict[str, float] | None = None,
-                 broken: dict[str, int] | None = None) -> np.ndarray:
+                 broken: dict[str, int] | None = None, gloss: Gloss | None = None) -> np.ndarray:
     """The indirect light of the first view from the surfaces of all, after settings.bounces.
 
     views: at most device.MOST_VIEWS, all of one resolution. world: (4, 3), by how much EEVEE's world lights a white surface
     with normal n, world[0] + n @ world[1:], W sr^-1 m^-2; what surfaces cover of it is taken away, which needs
     settings.visibility. Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1
-    m^-2, below 0 where the world's light goes; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as
+    m^-2, below 0 where the world's light goes; 0 on background. gloss: of the first view; its picture is filled in. progress, timings, broken, GpuUnavailable, Cancelled: as
     gather_indirect() has them; broken speaks of the first view.
     """
     lap = stopwatch(timings)
@@ -85,6 +85,11 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
     lap("upsample", indirect)
     picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
     lap("read_back")
+    if gloss is not None:
+        gathered = total = indirect = None
+        gloss.picture = glossy.gather(gloss, channels, base, table, settings, report,
+                                      {"emitters": emitters, "radiance": sent, "depths": depths})
+        lap("glossy")
     return picture
 
 
