@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import nodes, views, world
+from . import nodes, roughness, views, world
 from .nodes import MARK
 from .passes import PASSES
 
@@ -28,6 +28,12 @@ def connect(scene):
     if nodes.pictures(tree, scene) and not any(nodes.shows(node, helper) for node in tree.nodes):
         # Blender looks for scenes to render only among the nodes of the top level, not in groups.
         nodes.light_node(tree, helper, nodes.pictures(tree, scene)[0].layer).location = (-400, -400)
+    _offer_passes(helper)
+    for group in nodes.trees(tree):
+        if wants_gloss(scene):
+            nodes.splice_gloss(group, scene, helper)
+        else:
+            nodes.unsplice_gloss(group, helper)
     follow(scene)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
@@ -37,6 +43,12 @@ def connect_if_enabled(scene):
     """For settings that decide what connect() makes."""
     if scene.afterlight.enabled and scene.library is None:
         connect(scene)
+
+
+def wants_gloss(scene):
+    """Whether the light off glossy surfaces is to be gathered."""
+    settings = scene.afterlight
+    return settings.enabled and settings.use_glossy and settings.method == "RADIOSITY"
 
 
 def follow(scene):
@@ -57,7 +69,7 @@ def follow(scene):
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
         if layer.name in lit:
-            _switch_passes_on(layer)
+            _switch_passes_on(scene, layer)
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
         helper.name = _helper_name(scene)
 
@@ -72,7 +84,7 @@ def disconnect(scene):
             nodes.unsplice(group, scene, helper)
     _restore_tree(scene)
     for layer in scene.view_layers:
-        _switch_passes_off(scene, layer)
+        _switch_passes_off(scene, layer, layer.get(MARK, ()))
     settings.helper = None
     if is_ours:
         _remove_helper(helper)
@@ -131,7 +143,9 @@ def faults(scene):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if views.faults(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
-    if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in PASSES)
+    if wants_gloss(scene) and any(nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
+        found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
+    if any(mirror.use and not all(getattr(layer, switch) for switch, _ in _passes_of(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
     return found
@@ -245,21 +259,37 @@ def _restore_tree(scene):
     settings.compositing_was_off = False
 
 
-def _switch_passes_on(layer):
-    off = [switch for _, switch, _, _ in PASSES if not getattr(layer, switch)]
+def _offer_passes(helper):
+    """Let the Render Layers nodes of `helper` offer the passes that its engine gives now."""
+    for layer in helper.view_layers:
+        layer.update_render_passes()
+
+
+def _passes_of(scene, layer):
+    """(switch, pass) of all that is read of a view layer."""
+    return [*((switch, name) for _, switch, name, _ in PASSES), *(roughness.needed(layer) if wants_gloss(scene) else ())]
+
+
+def _switch_passes_on(scene, layer):
+    """Switch on what is read, and off again what we have switched on for a setting that is off by now."""
+    switches = [switch for switch, _ in _passes_of(scene, layer)]
+    _switch_passes_off(scene, layer, [switch for switch in layer.get(MARK, ()) if switch not in switches])
+    off = [switch for switch in switches if not getattr(layer, switch)]
     if off:
         layer[MARK] = sorted({*layer.get(MARK, ()), *off})
         for switch in off:
             setattr(layer, switch, True)
 
 
-def _switch_passes_off(scene, layer):
-    """Switch off what we switched on, but for passes that the user's own nodes have come to use."""
-    ours = list(layer.get(MARK, ()))
-    if MARK in layer:
+def _switch_passes_off(scene, layer, switches):
+    """Switch off some that we switched on, but for passes that the user's own nodes have come to use."""
+    switches = list(switches)
+    left = [switch for switch in layer.get(MARK, ()) if switch not in switches]
+    if switches and left:
+        layer[MARK] = left
+    elif MARK in layer and not left:
         del layer[MARK]
-    used = {output.name for node in nodes.pictures(scene.compositing_node_group, scene) if node.layer == layer.name
-            for output in node.outputs if output.is_linked}
-    for _, switch, name, _ in PASSES:
-        if switch in ours and name not in used:
+    used = nodes.used_passes(scene, layer.name) if switches else ()
+    for switch, name in (*((switch, name) for _, switch, name, _ in PASSES), roughness.COLOR, roughness.MATERIAL):
+        if switch in switches and name not in used:
             setattr(layer, switch, False)
