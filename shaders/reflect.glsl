@@ -7,7 +7,7 @@
 
 #define LEAST_ALPHA 1e-3      // a mirror, as far as texels can tell
 #define LEAST_COSINE 0.02     // of the eye to a normal that leans away from it, as smooth shading and bumps have them
-#define CLEARANCE 2.0         // lengths of a texel of the base: nearer than this a surface does not come out from behind another
+#define CLEARANCE 0.1         // lengths of a texel of the base: where rays begin
 
 void main()
 {
@@ -22,7 +22,7 @@ void main()
     vec3 normal = direction(receiver.normal + lean * eye), x = beside(normal), y = cross(normal, x);
     vec3 seen = vec3(dot(eye, x), dot(eye, y), dot(eye, normal));
     Surfel surfel = unpack_surfel(texelFetch(surfels, at, 0), at, 0);
-    float own = CLEARANCE * sqrt(surfel.area / max(seen.z, COSINE_FLOOR)), weights = 0.0;
+    float least = CLEARANCE * sqrt(surfel.area / max(seen.z, COSINE_FLOOR)), weights = 0.0;
     uint state = pcg_hash(uint(at.x) + pcg_hash(uint(at.y) + pcg_hash(uint(parameters.band.y))));
     vec3 shift;
     for (int k = 0; k < 3; k++) {
@@ -40,7 +40,7 @@ void main()
       }
       weights += weight;
       vec3 towards = direction(away.x * x + away.y * y + away.z * normal);
-      float far = first_hit(receiver.place, towards, own, random.z);
+      float far = first_hit(receiver.place, normal, towards, least, random.z);
       if (far > 0.0) {
         vec3 found = radiance_at(receiver.place + far * towards, towards);
         sum += weight * vec4(found - world_radiance(towards), 1.0 / far);

@@ -11,10 +11,9 @@ from reference_views import (NEAREST, depth_at, gap_at, passes_through, project,
 MARCH_STEPS = 32
 MARCH_TEXELS = 6.0
 REFINEMENTS = 8
-LIFT = 0.05
 LEAST_ALPHA = 1e-3
 LEAST_COSINE = 0.02
-CLEARANCE = 2.0
+CLEARANCE = 0.1
 R3 = np.array([0.8191725134, 0.6710436067, 0.5497004779])
 
 
@@ -89,13 +88,35 @@ def shown_span(eye, start, rate, least, most):
     return low, high
 
 
-def first_hit(eyes, place, towards, own, jitter, reach):
+def is_seen(eyes, place):
+    """(n,) bool: does any view see a place free?"""
+    found = [gap_at(eye, place) for eye in eyes]
+    return np.any([shown & (gap > 0) for shown, gap in found], axis=0) if len(place) else np.zeros(0, bool)
+
+
+def emitter_at(eye, grid, place):
+    """(n,) numbers of the emitters that a view shows at places, -1 outside of its frame. grid: (first, across, up, side, step)."""
+    first, across, up, side, step = grid
+    projected = project(eye, place)
+    block = np.floor(np.clip(projected[:, :2] * (step / side), -1e6, 1e6)).astype(int)
+    inside = (projected[:, 2] > NEAREST) & (block >= 0).all(-1) & (block < (across, up)).all(-1)
+    return np.where(inside, first + block[:, 1] * across + block[:, 0], -1)
+
+
+def can_pass(eye, grid, emitters, place, start, towards, goes_in):
+    """(n,) bool: can rays go in, or come out, at places through what a view shows there?"""
+    number = emitter_at(eye, grid, place)
+    normal, from_ = emitters[number, 1, :3], start - emitters[number, 0, :3]
+    return (number >= 0) & ((dot(normal, towards) < 0) == goes_in) & ((dot(normal, from_) > 0) == goes_in)
+
+
+def first_hit(eyes, grids, emitters, place, normal, towards, least, jitter, reach):
     """(n,) metres to the first surface that some view sees the ray pass through; 0 where there is none."""
     nearest = np.full(len(place), reach)
-    for index, eye in enumerate(eyes):
+    for index, (eye, grid) in enumerate(zip(eyes, grids)):
         start = projection_of(eye, place)
         rate = projection_of(eye, place + towards) - start
-        low, high = shown_span(eye, start, rate, LIFT * own, nearest)
+        low, high = shown_span(eye, start, rate, least, nearest)
         rays = np.flatnonzero(low < high)
         low, high, begin, path = low[rays], high[rays], place[rays], towards[rays]
         first, last = start[rays] + rate[rays] * low[:, None], start[rays] + rate[rays] * high[:, None]
@@ -105,14 +126,18 @@ def first_hit(eyes, place, towards, own, jitter, reach):
         steps = np.clip(np.ceil(texels / MARCH_TEXELS), 4, MARCH_STEPS)
         before, open_ = low.copy(), np.ones(len(rays), bool)
         was_free = _is_free(eye, begin + path * low[:, None])
-        has_begun = was_free | (index > 0)
+        here = project(eye, begin)
+        shown = (depth_at(eye, here) > 0) & shows(eye, begin, normal[rays], to_eye(eyes[0], begin), here)
+        has_begun = was_free | ~(shown | (index == 0))
         for k in range(MARCH_STEPS + 1):
             share = np.minimum((k + jitter[rays]) / steps, 1)
             at = low + (high - low) * share * first[:, 3] / (last[:, 3] + (first[:, 3] - last[:, 3]) * share)
             is_free = _is_free(eye, begin + path * at[:, None])
             turn = np.flatnonzero(open_ & (k <= steps) & (is_free != was_free))
             passed, lower, upper = passes_through(eye, begin[turn], path[turn], before[turn], at[turn])
-            passed &= was_free[turn] | (has_begun[turn] & (lower > own[rays[turn]]))
+            behind = np.where(was_free[turn], upper, lower)
+            passed &= can_pass(eye, grid, emitters, begin[turn] + path[turn] * behind[:, None], begin[turn], path[turn], was_free[turn])
+            passed &= was_free[turn] | (has_begun[turn] & ~is_seen(eyes, begin[turn] + path[turn] * lower[:, None]))
             for _ in range(REFINEMENTS):
                 middle = (lower + upper) / 2
                 same = _is_free(eye, begin[turn] + path[turn] * middle[:, None]) == was_free[turn]
@@ -131,11 +156,9 @@ def radiance_at(eyes, grids, emitters, sent, place, towards):
     """(n, 3) radiance that leaves places against `towards`. grids: (first, across, up, side) of each view's emitters, emitters
     (count, 4, 4) and sent (count, 4) as the shaders have them; a block is one texel of a depth map or a part of it."""
     total, weights = np.zeros((len(place), 3)), np.zeros(len(place))
-    for eye, (first, across, up, side, step) in zip(eyes, grids):
-        projected = project(eye, place)
-        block = np.floor(np.clip(projected[:, :2] * (step / side), -1e6, 1e6)).astype(int)
-        inside = (projected[:, 2] > NEAREST) & (block >= 0).all(-1) & (block < (across, up)).all(-1)
-        number = np.where(inside, first + block[:, 1] * across + block[:, 0], 0)
+    for eye, grid in zip(eyes, grids):
+        number, projected = emitter_at(eye, grid, place), project(eye, place)
+        inside = number >= 0
         normal = direction(emitters[number, 1, :3])
         seen = inside & (emitters[number, 0, 3] > 0) & (depth_at(eye, projected) > 0)
         seen &= shows(eye, place, normal, -towards, projected)
@@ -167,7 +190,7 @@ def reflect(eyes, grids, emitters, sent, places, normals, areas, roughness, shif
         random = np.modf(shifts + k * R3)[0]
         towards, weight = rays_of(places, normals, eye, roughness, random[:, :2])
         weights += weight
-        far = first_hit(eyes, places, towards, CLEARANCE * np.sqrt(areas / np.maximum(dot(normals, eye), COSINE_FLOOR)), random[:, 2], reach)
+        far = first_hit(eyes, grids, emitters, places, normals, towards, CLEARANCE * np.sqrt(areas / np.maximum(dot(normals, eye), COSINE_FLOOR)), random[:, 2], reach)
         hit = np.flatnonzero((far > 0) & (weight > 0))
         met = places[hit] + far[hit, None] * towards[hit]
         found = radiance_at(eyes, grids, emitters, sent, met, towards[hit])
