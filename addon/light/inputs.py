@@ -77,10 +77,12 @@ class Passes:
 @dataclass(frozen=True, eq=False)
 class View:
     """A picture of the scene that sends light, and the camera that saw it. source: its Passes, or a function that loads
-    them: each is needed only for a moment, and they are large."""
+    them: each is needed only for a moment, and they are large. shine: a function that loads Passes of the same picture which have
+    Glossy Color and Glossy Direct in the places of the diffuse ones, and no emission; or None where they can't be had."""
 
     source: Passes | Callable[[], Passes]
     camera: Camera
+    shine: Callable[[], Passes | None] = lambda: None
 
     @property
     def passes(self) -> Passes:

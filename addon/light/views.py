@@ -87,6 +87,7 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
     lap("read_back")
     if gloss is not None:
         gathered = total = indirect = None
+        sent = shining(views, table, depths, irradiance, sent)
         gloss.picture = glossy.gather(gloss, channels, base, table, settings, report,
                                       {"emitters": emitters, "radiance": sent, "depths": depths})
         lap("glossy")
@@ -114,6 +115,22 @@ def look(views, table, report=lambda stage, fraction: None, broken=None):
             device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
                             device.groups(*table[kind][index][1:3]), table)
     return depths, *targets.values(), channels
+
+
+def shining(views, table, depths, irradiance, sent):
+    """As radiate() gives `sent`, with what the gloss of emitters sends, as if it went into all directions alike: Glossy Color times
+    what lamps and world make of it in their view, and the light that their receivers have gathered."""
+    target, size = device.texture(4 * device.RECORDS_WIDTH, rows_of(table["emitters"])), views[0].passes.size
+    target.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
+    for index, view in enumerate(views):
+        shown = view.shine()
+        if shown is not None:
+            device.dispatch("emit_with_normals" if shown.lacks_normals() else "emit", camera_block(view, index, size),
+                            upload(shown) | {"depths": depths, "records_out": target},
+                            device.groups(*table["emitters"][index][1:3]), table)
+    more = device.read(radiate(target, irradiance, table)).copy()
+    more[..., 3] = 0  # the area, which both have
+    return device.texture(sent.width, sent.height, data=device.read(sent) + more)
 
 
 def start_of(settings, size):

@@ -154,12 +154,13 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         path = shot.again.path if shot.again else self.file
-        main = light.View(lambda: passes.load(path, shot.layer, shot.window), shot.camera)
+        main = light.View(lambda: passes.load(path, shot.layer, shot.window), shot.camera,
+                          lambda: roughness.shine(path, shot.layer, shot.window))
         saved = shot.again.views if shot.again else self.views
         if shot.again and shot.views > shot.again.wanted:
             self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
                                        "the light from all of them", len(saved), shot.views))
-        further = [light.View(view.load, view.camera) for view in saved]
+        further = [light.View(view.load, view.camera, view.shine) for view in saved]
         shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further)),
                        "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}
         start = time.perf_counter()

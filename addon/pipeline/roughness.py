@@ -5,6 +5,8 @@ Where the view layer has a value AOV of this name, that is taken: the user's mat
 Cryptomatte pass tells each pixel's material, and its nodes its roughness (materials.py).
 """
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 
@@ -14,13 +16,13 @@ from . import materials, passes, turns
 AOV = "Roughness"
 UNKNOWN = 0.5              # where nodes decide it that are not read, and of surfaces without a material: Blender's own default
 # Beside passes.PASSES: the view layer's switch, and the pass.
-COLOR = "use_pass_glossy_color", "Glossy Color"
+COLOR, DIRECT = ("use_pass_glossy_color", "Glossy Color"), ("use_pass_glossy_direct", "Glossy Direct")
 MATERIAL = "use_pass_cryptomatte_material", "CryptoMaterial00"
 
 
 def needed(layer):
     """(switch, pass) of what load() reads of a view layer."""
-    return (COLOR,) if has_aov(layer) else (COLOR, MATERIAL)
+    return (COLOR, DIRECT) if has_aov(layer) else (COLOR, DIRECT, MATERIAL)
 
 
 def has_aov(layer):
@@ -41,6 +43,16 @@ def load(path, layer, window):
     except KeyError:
         return None
     return light.Gloss(color, rough)
+
+
+def shine(path, layer, window):
+    """light.Passes of a view layer as light.View.shine wants them, and None where the file lacks a pass."""
+    cut, found = passes.read(path, window), passes.load(path, layer, window)
+    try:
+        color, direct = (tuple(cut(f"{layer}.{name}.{axis}") for axis in "RGB") for _, name in (COLOR, DIRECT))
+    except KeyError:
+        return None
+    return replace(found, diffuse_color=color, diffuse_direct=direct, emission=(np.zeros_like(found.depth),) * 3)
 
 
 def of_materials(numbers):

@@ -290,6 +290,6 @@ def _switch_passes_off(scene, layer, switches):
     elif MARK in layer and not left:
         del layer[MARK]
     used = nodes.used_passes(scene, layer.name) if switches else ()
-    for switch, name in (*((switch, name) for _, switch, name, _ in PASSES), roughness.COLOR, roughness.MATERIAL):
+    for switch, name in (*((switch, name) for _, switch, name, _ in PASSES), roughness.COLOR, roughness.DIRECT, roughness.MATERIAL):
         if switch in switches and name not in used:
             setattr(layer, switch, False)
