@@ -2,6 +2,7 @@
 // March: where a ray meets a surface that some view shows, and what comes back from there.
 
 #define MARCH_STEPS 32        // at most, along what a view has in frame of a ray
+#define LOST -1.0
 #define MARCH_TEXELS 6.0      // of the depth map in one step, unless that takes more of them
 #define REFINEMENTS 8         // more halvings of a step in which something is met, to tell where
 
@@ -57,11 +58,12 @@ bool is_seen(vec3 place)
   return found;
 }
 
-// Metres to the first surface that some view sees the ray pass through; 0 where there is none. Steps are even in the view's
-// picture. least: metres from the place where the ray begins.
+// Metres to the first surface that some view sees the ray pass through; 0 where it ends in the open, and LOST where it went behind
+// something for good and no view sees the sky there. Steps are even in the view's picture. least: metres from the place where the ray begins.
 float first_hit(vec3 place, vec3 normal, vec3 towards, float least, float jitter)
 {
   float reach = views.odds.w, nearest = reach;
+  bool is_hidden = false, is_open = false;
   for (uint left = all_views(); left != 0u; left &= left - 1u) {
     int view = findLSB(left);
     vec4 start = projection_of(view, place), rate = projection_of(view, place + towards) - start;
@@ -102,8 +104,10 @@ float first_hit(vec3 place, vec3 normal, vec3 towards, float least, float jitter
       was_free = is_free;
       has_begun = has_begun || is_free;
     }
+    is_hidden = is_hidden || !was_free;
+    is_open = is_open || (was_free && gap_at(view, last) > FARTHEST);
   }
-  return nearest < reach ? nearest : 0.0;
+  return nearest < reach ? nearest : is_hidden && !is_open ? LOST : 0.0;
 }
 
 // Radiance that leaves a place on a surface against `towards`: of the views that show it from that side, each by how fine it

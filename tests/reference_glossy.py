@@ -4,13 +4,14 @@ the lobe's integrals that they draw from."""
 
 import numpy as np
 
-from reference import COSINE_FLOOR, direction, dot
+from reference import COSINE_FLOOR, FARTHEST, direction, dot
 from reference_views import (NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye, to_view,
                              world_radiance)
 
 MARCH_STEPS = 32
 MARCH_TEXELS = 6.0
 REFINEMENTS = 8
+LOST = -1.0
 LEAST_ALPHA = 1e-3
 LEAST_COSINE = 0.02
 CLEARANCE = 0.1
@@ -111,8 +112,9 @@ def can_pass(eye, grid, emitters, place, start, towards, goes_in):
 
 
 def first_hit(eyes, grids, emitters, place, normal, towards, least, jitter, reach):
-    """(n,) metres to the first surface that some view sees the ray pass through; 0 where there is none."""
+    """(n,) metres to the first surface that some view sees the ray pass through; 0 in the open, LOST out of sight."""
     nearest = np.full(len(place), reach)
+    hidden, sky = np.zeros((2, len(place)), bool)
     for index, (eye, grid) in enumerate(zip(eyes, grids)):
         start = projection_of(eye, place)
         rate = projection_of(eye, place + towards) - start
@@ -145,7 +147,9 @@ def first_hit(eyes, grids, emitters, place, normal, towards, least, jitter, reac
             nearest[rays[turn[passed]]] = ((lower + upper) / 2)[passed]
             open_[turn[passed]] = False
             before, was_free, has_begun = at, is_free, has_begun | is_free
-    return np.where(nearest < reach, nearest, 0)
+        hidden[rays[~was_free]] = True
+        sky[rays[was_free & (gap_at(eye, begin + path * high[:, None])[1] > FARTHEST)]] = True
+    return np.where(nearest < reach, nearest, np.where(hidden & ~sky, LOST, 0))
 
 
 def _is_free(eye, places):
@@ -189,8 +193,8 @@ def reflect(eyes, grids, emitters, sent, places, normals, areas, roughness, shif
     for k in range(rays):
         random = np.modf(shifts + k * R3)[0]
         towards, weight = rays_of(places, normals, eye, roughness, random[:, :2])
-        weights += weight
         far = first_hit(eyes, grids, emitters, places, normals, towards, CLEARANCE * np.sqrt(areas / np.maximum(dot(normals, eye), COSINE_FLOOR)), random[:, 2], reach)
+        weights += np.where(far == LOST, 0, weight)
         hit = np.flatnonzero((far > 0) & (weight > 0))
         met = places[hit] + far[hit, None] * towards[hit]
         found = radiance_at(eyes, grids, emitters, sent, met, towards[hit])
