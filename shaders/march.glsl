@@ -111,8 +111,8 @@ float first_hit(vec3 place, vec3 normal, vec3 towards, float least, float jitter
 }
 
 // Radiance that leaves a place on a surface against `towards`: of the views that show it from that side, each by how fine it
-// does. Black where none does.
-vec3 radiance_at(vec3 place, vec3 towards)
+// does. In the fourth channel 1, or 0 where none does.
+vec4 radiance_at(vec3 place, vec3 towards)
 {
   vec3 sum = vec3(0.0);
   float weights = 0.0;
@@ -132,5 +132,5 @@ vec3 radiance_at(vec3 place, vec3 towards)
       weights += weight;
     }
   }
-  return weights > 0.0 ? sum / weights : vec3(0.0);
+  return weights > 0.0 ? vec4(sum / weights, 1.0) : vec4(0.0);
 }

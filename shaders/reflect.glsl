@@ -3,7 +3,8 @@
 // back; EEVEE's Glossy Color says how much does. The fourth channel is the mean of 1 / distance of what was met.
 //
 // EEVEE has the whole world in its reflections. What a ray meets stands before its part of the world, and takes that away. A
-// ray that meets nothing adds nothing; one that is lost from sight counts as the mean of the others.
+// ray that meets nothing adds nothing; one that is lost from sight, or meets a side that no
+// view shows, counts as the mean of the others.
 
 #define LEAST_ALPHA 1e-3      // a mirror, as far as texels can tell
 #define LEAST_COSINE 0.02     // of the eye to a normal that leans away from it, as smooth shading and bumps have them
@@ -40,11 +41,12 @@ void main()
       }
       vec3 towards = direction(away.x * x + away.y * y + away.z * normal);
       float far = first_hit(receiver.place, normal, towards, least, random.z);
-      weights += far == LOST ? 0.0 : weight;
       if (far > 0.0) {
-        vec3 found = radiance_at(receiver.place + far * towards, towards);
-        sum += weight * vec4(found - world_radiance(towards), 1.0 / far);
+        vec4 found = radiance_at(receiver.place + far * towards, towards);
+        weight *= found.a;
+        sum += weight * vec4(found.rgb - world_radiance(towards), 1.0 / far);
       }
+      weights += far == LOST ? 0.0 : weight;
     }
     sum = weights > 0.0 ? sum * vec4(vec3(PI), 1.0) / weights : vec4(0.0);
   }

@@ -157,7 +157,7 @@ def _is_free(eye, places):
 
 
 def radiance_at(eyes, grids, emitters, sent, place, towards):
-    """(n, 3) radiance that leaves places against `towards`. grids: (first, across, up, side) of each view's emitters, emitters
+    """((n, 3), (n,) bool): radiance that leaves places against `towards`, and whether any view shows it. grids: (first, across, up, side) of each view's emitters, emitters
     (count, 4, 4) and sent (count, 4) as the shaders have them; a block is one texel of a depth map or a part of it."""
     total, weights = np.zeros((len(place), 3)), np.zeros(len(place))
     for eye, grid in zip(eyes, grids):
@@ -169,7 +169,7 @@ def radiance_at(eyes, grids, emitters, sent, place, towards):
         weight = np.where(seen, 1 / np.where(seen, shown_area(eye, place, normal, projected[:, 2]), 1), 0)
         total += weight[:, None] * sent[number, :3]
         weights += weight
-    return total / np.where(weights > 0, weights, 1)[:, None]
+    return total / np.where(weights > 0, weights, 1)[:, None], weights > 0
 
 
 def rays_of(places, normals, eye, roughness, random):
@@ -194,10 +194,11 @@ def reflect(eyes, grids, emitters, sent, places, normals, areas, roughness, shif
         random = np.modf(shifts + k * R3)[0]
         towards, weight = rays_of(places, normals, eye, roughness, random[:, :2])
         far = first_hit(eyes, grids, emitters, places, normals, towards, CLEARANCE * np.sqrt(areas / np.maximum(dot(normals, eye), COSINE_FLOOR)), random[:, 2], reach)
-        weights += np.where(far == LOST, 0, weight)
         hit = np.flatnonzero((far > 0) & (weight > 0))
         met = places[hit] + far[hit, None] * towards[hit]
-        found = radiance_at(eyes, grids, emitters, sent, met, towards[hit])
+        found, known = radiance_at(eyes, grids, emitters, sent, met, towards[hit])
+        weight[hit] *= known
+        weights += np.where(far == LOST, 0, weight)
         if world is not None:
             found = found - world_radiance(world, towards[hit])
         total[hit] += weight[hit, None] * np.concatenate([found, 1 / far[hit, None]], -1)
