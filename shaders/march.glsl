@@ -2,12 +2,12 @@
 // March: where a ray meets a surface that some view shows, and what comes back from there.
 
 #define MARCH_STEPS 32        // at most, along what a view has in frame of a ray
-#define LOST -1.0
+#define LOST -1.0             // metres to nowhere: out of sight
 #define MARCH_TEXELS 6.0      // of the depth map in one step, unless that takes more of them
 #define REFINEMENTS 8         // more halvings of a step in which something is met, to tell where
 
-// The part of a ray, metres from its start, that a view has in frame, within `span`. start, rate: its projection there, and by how
-// much that changes in a metre.
+// The part of a ray, metres from its start, that a view has in frame, within `span`. start, rate: its projection there, and
+// by how much that changes in a metre.
 vec2 shown_span(int view, vec4 start, vec4 rate, vec2 span)
 {
   vec2 size = vec2(views.depths.xy);
@@ -37,8 +37,8 @@ vec3 normal_of(int number)
   return texelFetch(emitters, record_texel(number, 1, 4), 0).xyz;
 }
 
-// Can a ray go in, or come out, at a place through what a view shows there? It begins before that surface and goes against it, or
-// behind it and along its normal. A depth map alone takes what is hidden close behind a thin wall for free.
+// Can a ray go in, or come out, at a place through what a view shows there? It begins before that surface and goes against
+// it, or behind it and along its normal. A depth map alone takes what is hidden close behind a thin wall for free.
 bool can_pass(int view, vec3 place, vec3 start, vec3 towards, bool goes_in)
 {
   int number = emitter_at(view, place);
@@ -58,8 +58,9 @@ bool is_seen(vec3 place)
   return found;
 }
 
-// Metres to the first surface that some view sees the ray pass through; 0 where it ends in the open, and LOST where it went behind
-// something for good and no view sees the sky there. Steps are even in the view's picture. least: metres from the place where the ray begins.
+// Metres to the first surface that some view sees the ray pass through; 0 where it ends in the open, and LOST where it went
+// behind something for good and no view sees the sky there. Steps are even in the view's picture. least: metres from the
+// place to where the ray begins.
 float first_hit(vec3 place, vec3 normal, vec3 towards, float least, float jitter)
 {
   float reach = views.odds.w, nearest = reach;
@@ -80,7 +81,8 @@ float first_hit(vec3 place, vec3 normal, vec3 towards, float least, float jitter
     // its beginning is the surface that it leaves, of which a depth map knows no more than a texel.
     vec3 projected = project(view, place);
     bool was_free = gap_at(view, first) > 0.0;
-    bool has_begun = was_free || !(view == 0 || shows(view, place, normal, to_eye(0, place), projected, depth_at(view, projected)));
+    bool is_shown = view == 0 || shows(view, place, normal, to_eye(0, place), projected, depth_at(view, projected));
+    bool has_begun = was_free || !is_shown;
     for (int k = 0; k <= steps; k++) {
       float share = min((float(k) + jitter) / float(steps), 1.0);
       float at = span.x + (span.y - span.x) * share * first.w / mix(last.w, first.w, share);

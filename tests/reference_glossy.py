@@ -96,7 +96,8 @@ def is_seen(eyes, place):
 
 
 def emitter_at(eye, grid, place):
-    """(n,) numbers of the emitters that a view shows at places, -1 outside of its frame. grid: (first, across, up, side, step)."""
+    """(n,) numbers of the emitters that a view shows at places, -1 outside of its frame. grid: (first, across, up, side,
+    step)."""
     first, across, up, side, step = grid
     projected = project(eye, place)
     block = np.floor(np.clip(projected[:, :2] * (step / side), -1e6, 1e6)).astype(int)
@@ -138,7 +139,8 @@ def first_hit(eyes, grids, emitters, place, normal, towards, least, jitter, reac
             turn = np.flatnonzero(open_ & (k <= steps) & (is_free != was_free))
             passed, lower, upper = passes_through(eye, begin[turn], path[turn], before[turn], at[turn])
             behind = np.where(was_free[turn], upper, lower)
-            passed &= can_pass(eye, grid, emitters, begin[turn] + path[turn] * behind[:, None], begin[turn], path[turn], was_free[turn])
+            passed &= can_pass(eye, grid, emitters, begin[turn] + path[turn] * behind[:, None], begin[turn], path[turn],
+                               was_free[turn])
             passed &= was_free[turn] | (has_begun[turn] & ~is_seen(eyes, begin[turn] + path[turn] * lower[:, None]))
             for _ in range(REFINEMENTS):
                 middle = (lower + upper) / 2
@@ -190,10 +192,11 @@ def reflect(eyes, grids, emitters, sent, places, normals, areas, roughness, shif
     """(n, 4): pi times the mean radiance over each texel's lobe, and the mean of 1 / distance. shifts: (n, 3)."""
     total, weights = np.zeros((len(places), 4)), np.zeros(len(places))
     eye = direction(to_eye(eyes[0], places))
+    least = CLEARANCE * np.sqrt(areas / np.maximum(dot(normals, eye), COSINE_FLOOR))
     for k in range(rays):
         random = np.modf(shifts + k * R3)[0]
         towards, weight = rays_of(places, normals, eye, roughness, random[:, :2])
-        far = first_hit(eyes, grids, emitters, places, normals, towards, CLEARANCE * np.sqrt(areas / np.maximum(dot(normals, eye), COSINE_FLOOR)), random[:, 2], reach)
+        far = first_hit(eyes, grids, emitters, places, normals, towards, least, random[:, 2], reach)
         hit = np.flatnonzero((far > 0) & (weight > 0))
         met = places[hit] + far[hit, None] * towards[hit]
         found, known = radiance_at(eyes, grids, emitters, sent, met, towards[hit])

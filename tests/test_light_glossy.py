@@ -21,7 +21,7 @@ def numbers(count, seed=0):
 @pytest.mark.parametrize("alpha", [0.01, 0.25, 0.64])
 @pytest.mark.parametrize("eye", EYES)
 def test_the_lobe_integrates_to_its_albedo(eye, alpha):
-    """The mean weight of drawn directions is the integral of the BRDF times the cosine: a furnace sends back at most what it gets.
+    """The mean weight of drawn directions is the integral of the BRDF times the cosine: no lobe sends back more than it gets.
     And draws lie where the lobe has its light: their mean direction is the integral's."""
     eye = np.array(eye) / np.linalg.norm(eye)
     facets, facet_steradians = glossy_64.hemisphere(1500, alpha)
@@ -247,3 +247,48 @@ def test_the_diffuse_light_does_not_depend_on_gloss(light):
     plain = light.gather_views(views, draws(light))
     shining = light.gather_views(views, draws(light), gloss=gloss_of(light, views[0].passes))
     np.testing.assert_array_equal(plain, shining)
+
+
+@pytest.mark.parametrize("size, start", [((640, 360), 2), ((960, 544), 4)])
+def test_memory_is_what_the_textures_take(light, monkeypatch, size, start):
+    """The whole way with textures that only count themselves."""
+    held = most = 0
+
+    class Texture:
+        def __init__(self, width, height, format="RGBA32F", data=None):
+            nonlocal held, most
+            self.width, self.height, self.format = width, height, format
+            self.bytes = width * height * {"RGBA32F": 16, "RGBA32UI": 16, "RG32F": 8, "R32F": 4}[format]
+            held += self.bytes
+            most = max(most, held)
+
+        def __del__(self):
+            nonlocal held
+            held -= self.bytes
+
+        def clear(self, **_):
+            pass
+
+    monkeypatch.setattr(light.device, "texture", Texture)
+    for name in ("dispatch", "wait", "run_band"):
+        monkeypatch.setattr(light.device, name, lambda *_: None)
+    monkeypatch.setattr(light.device, "read", lambda texture: np.ones(
+        (texture.height, texture.width, 2 if texture.format == "RG32F" else 4), np.float32))
+    plane = np.ones(size[::-1], np.float32)
+    passes = light.Passes(plane, *[(plane,) * 3] * 4)
+    camera = light.Camera(np.eye(3), np.ones(2), np.zeros(2))
+    views = [light.View(passes, camera, lambda: passes)] * 3
+    chosen = draws(light, start=start, bounces=2)
+    light.gather_views(views, chosen, gloss=light.Gloss((plane,) * 3, plane))
+    assert light.gpu_bytes(*size, chosen, 2, shines=True) == most and held == 0
+
+
+def test_gloss_shows_the_gloss_that_it_meets(light):
+    """Walls that send 1 of their own, and a gloss of 0.5 beside that of which lamps make 0.6: others see 1.6 in their gloss, and with
+    the light that the walls have gathered, pi, half of that more."""
+    views = rooms.box_views(light, albedo=0.0)
+    shining = [light.View(view.source, view.camera, lambda view=view: rooms.view_of(
+        light, view.camera, (64, 64), albedo=0.5, radiance=0.6).source) for view in views]
+    for bounces, sent in ((1, 1.6), (2, 1.6 + 0.5)):
+        picture = gathered(light, shining, gloss_of(light, views[0].passes), bounces=bounces)
+        assert picture.mean() == pytest.approx(0.5 * sent, rel=0.02)

@@ -11,7 +11,7 @@ from .pipeline import composite
 
 # Rays of a texel. Mesa's software driver ends the loops of a shader, without a word, after 65,535 rounds in all: ten views' steps
 # along so many rays, half of which find a step to halve, stay within it.
-MOST_RAYS = 64
+MOST_RAYS = 32
 
 
 def gather(gloss: Gloss, channels: dict, base, table: np.ndarray, settings, report, textures: dict) -> np.ndarray:
@@ -71,7 +71,7 @@ def reach_of(table: np.ndarray, depths) -> float:
 
 
 def surface_of(gloss: Gloss, start: int) -> np.ndarray:
-    """(up, across, 4) float32 of the base's texels, bottom row first: mean roughness of their gloss, and how much of it there is."""
+    """(up, across, 4) float32 of the base's texels, bottom row first: mean roughness of their gloss, and how much they have."""
     amount = np.nan_to_num(np.maximum.reduce(gloss.color), nan=0.0, posinf=0.0, neginf=0.0).clip(0, None)[::-1]
     rough = np.nan_to_num(gloss.roughness, nan=1.0).clip(0, 1)[::-1]
     height, width = amount.shape
@@ -99,6 +99,5 @@ def upload(color) -> dict:
 
 
 def gpu_bytes(base: int, channel: int) -> int:
-    """Bytes of textures that this has at its fullest beside the records of the views: a base of so many texels, and channels of
-    so many bytes each."""
-    return 16 * 4 * base + (7 + 3 + 3) * channel
+    """Bytes of textures that gather() adds at its fullest, for a base of so many texels and channels of so many bytes each."""
+    return max(3 * 16 * base, 2 * 16 * base + 6 * channel)

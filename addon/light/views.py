@@ -219,7 +219,7 @@ def draw(name, seed, table, target, textures, block=None, after_band=lambda done
         after_band(done / (across * up))
 
 
-def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
+def gpu_bytes(width: int, height: int, settings: Draws, further: int, shines: bool) -> int:
     """As memory.gpu_bytes()."""
     table = layout(1 + further, (width, height))
     depths = 8 * int(table["depths"][0] * table["depths"][1]) * (1 + further)
@@ -230,7 +230,11 @@ def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
     channel = -(-width // 4) * height * 16
     bouncing = 16 * (base + receivers + 2 * emitters) + 4 * ENTRIES + 7 * channel
     finishing = 16 * (3 * base + receivers + emitters) + 4 * ENTRIES + 10 * channel
-    return kept + max(13 * channel + 16 * base, bouncing, finishing)
+    most = max(13 * channel + 16 * base, bouncing, finishing)
+    if shines:
+        held = 16 * (base + receivers + emitters) + 4 * ENTRIES + 7 * channel
+        most = max(most, held + 64 * emitters + max(13 * channel, 16 * emitters), held + glossy.gpu_bytes(base, channel))
+    return kept + most
 
 
 def count_of(grids):
