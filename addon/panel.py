@@ -122,6 +122,7 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
             row = column.row()
             row.active = settings.use_visibility
             row.prop(settings, "use_world_shadow")
+            column.prop(settings, "use_glossy")
         column = layout.column(align=True)
         column.active = not light.is_exact(light_settings(settings, 0))
         column.prop(settings, "seed")

@@ -15,7 +15,8 @@ sys.path.insert(0, str(HERE))               # Blender's -P does not do it
 
 import session  # noqa: E402
 
-SAMPLES = ("cornell_box", "sunlit_room", "many_lights", "emissive_sign", "sculpture", "apartment", "street", "desk", "corridor")
+SAMPLES = ("cornell_box", "sunlit_room", "many_lights", "emissive_sign", "sculpture", "apartment", "street", "desk", "corridor",
+           "metal_bin", "polished_floor", "plastics")
 MOVING = ("pillars", "walking_shadow", "lamp_switched", "creature")  # shots; apart, as the others are measured by the folder
 LARGEST = 2_000_000                         # bytes; the samples are kept in the repository
 

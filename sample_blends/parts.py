@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the sample scenes are built from: materials, boxes, lights, a camera, render settings. Metres, watts, radians."""
 
-from math import radians
+from math import cos, pi, radians, sin
 
 import bpy
 from bpy_extras import anim_utils
@@ -52,6 +52,18 @@ def diffuse(name, color):
     return material
 
 
+def glossy(name, color, roughness, metallic=0.0):
+    """A plastic, or a metal, of this roughness."""
+    material = bpy.data.materials.new(name)
+    shader = material.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value = (*color, 1)
+    shader.inputs["Roughness"].default_value = roughness
+    shader.inputs["Metallic"].default_value = metallic
+    material.diffuse_color = (*color, 1)
+    material.roughness, material.metallic = roughness, metallic
+    return material
+
+
 def glowing(name, color, strength):
     """A black body that shines: emission of `color` times `strength` W sr^-1 m^-2."""
     material = diffuse(name, (0, 0, 0))
@@ -95,6 +107,24 @@ def box(name, material, low, high, turn=0.0, bevel=0.0):
         thing.data.shade_smooth()
         modifier.harden_normals = True
     return thing
+
+
+def turned(name, material, profile, location=(0, 0, 0), around=48):
+    """A smooth surface of revolution about z; profile: (radius, height) from one end to the other, the outside to its right."""
+    angles = [2 * pi * step / around for step in range(around)]
+    vertices = [(radius * cos(angle), radius * sin(angle), height) for radius, height in profile for angle in angles]
+    faces = [(ring * around + step, ring * around + (step + 1) % around, (ring + 1) * around + (step + 1) % around,
+              (ring + 1) * around + step) for ring in range(len(profile) - 1) for step in range(around)]
+    thing = place(name, mesh(name, vertices, faces, smooth=True), material, location)
+    thing.data.set_sharp_from_angle(angle=radians(40))
+    return thing
+
+
+def ball(name, material, location, radius, around=48):
+    """A smooth ball."""
+    steps = around // 2
+    return turned(name, material, [(radius * sin(pi * step / steps), -radius * cos(pi * step / steps)) for step in range(steps + 1)],
+                  location, around)
 
 
 def quad(name, material, corners):

@@ -19,14 +19,6 @@ float power_of(vec3 radiance)
   return abs(radiance.r) + abs(radiance.g) + abs(radiance.b);
 }
 
-// Where a view's emitters would have the receiver: a place in its grid; far outside of it where it is behind the camera.
-ivec2 place_in_grid(int view, vec3 place)
-{
-  vec3 projected = project(view, place);
-  float blocks = float(views.depths.z) / float(views.emitters[view].w);
-  return projected.z > NEAREST ? ivec2(floor(clamp(projected.xy * blocks, -1e6, 1e6))) : ivec2(-1000000);
-}
-
 // Chance of each of the 8 k emitters on the square ring k.
 float ring_chance(int k)
 {

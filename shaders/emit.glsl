@@ -9,23 +9,6 @@
 // A surface that several views show is shared out between them by the balance heuristic, w_k = A_k^-1 / sum_j A_j^-1 over
 // the views j that see it, A_j being the area of a pixel there: the view that shows it finest counts most.
 
-#define DEPTH_TOLERANCE 0.02  // of the depth
-#define SLOPE_TOLERANCE 2.0   // texels of the depth map, on a slope
-
-// Does another view, in whose depth map `depth` is found there, show this very surface, from the same side?
-bool shows(int view, vec3 place, vec3 normal, vec3 eye, vec3 projected, float depth)
-{
-  vec3 other = to_eye(view, place);
-  if (dot(normal, other) * dot(normal, eye) <= 0.0) {
-    return false;
-  }
-  float cosine = max(abs(dot(normal, direction(other))), COSINE_FLOOR);
-  vec2 side = abs(views.projection[view].xy);
-  float texel = max(side.x, side.y) * (is_parallel(view) ? 1.0 : projected.z);
-  float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
-  return abs(depth - projected.z) < DEPTH_TOLERANCE * projected.z + SLOPE_TOLERANCE * slope * texel;
-}
-
 // Share of a surface that is this view's.
 float own_share(int own, vec3 place, vec3 normal, float depth)
 {

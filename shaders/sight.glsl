@@ -7,6 +7,8 @@
 #define BISECTIONS 4          // of a step in which a way goes behind something or comes out
 #define CONTINUOUS 0.4        // of the change in the gap over that step, that may be left after these
 #define SLOPE 2.0             // of the step: more change is no surface's that it passes through, but from edge to edge of others
+#define DEPTH_TOLERANCE 0.02  // of the depth
+#define SLOPE_TOLERANCE 2.0   // texels of the depth map, on a slope
 
 // Planar depth of what the view shows there; 0 outside its frame and behind it.
 float depth_at(int view, vec3 projected)
@@ -14,6 +16,20 @@ float depth_at(int view, vec3 projected)
   ivec2 texel = ivec2(floor(projected.xy)), size = views.depths.xy;
   bool inside = projected.z > NEAREST && is_inside(texel, size);
   return inside ? texelFetch(depths, texel + ivec2(0, view * size.y), 0).r : 0.0;
+}
+
+// Does another view, in whose depth map `depth` is found there, show this very surface, from the same side?
+bool shows(int view, vec3 place, vec3 normal, vec3 eye, vec3 projected, float depth)
+{
+  vec3 other = to_eye(view, place);
+  if (dot(normal, other) * dot(normal, eye) <= 0.0) {
+    return false;
+  }
+  float cosine = max(abs(dot(normal, direction(other))), COSINE_FLOOR);
+  vec2 side = abs(views.projection[view].xy);
+  float texel = max(side.x, side.y) * (is_parallel(view) ? 1.0 : projected.z);
+  float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
+  return abs(depth - projected.z) < DEPTH_TOLERANCE * projected.z + SLOPE_TOLERANCE * slope * texel;
 }
 
 // Texel of the depth map. projected: as projection_of() gives it.
@@ -31,8 +47,9 @@ float gap_at(int view, vec4 projected)
 }
 
 // A way that is seen at one end of a step and hidden at the other: does it pass through the surface, or behind the edge of
-// something nearer? Then the gap jumps, and halving the step does not make the jump smaller. length: of the step, m.
-bool passes_through(int view, vec4 start, vec4 path, float low, float high, float length)
+// something nearer? Then the gap jumps, and halving the step does not make the jump smaller. length: of the step, m. low,
+// high: shares of the way, between which it passes, are brought close together.
+bool passes_through(int view, vec4 start, vec4 path, inout float low, inout float high, float length)
 {
   float gap_low = gap_at(view, start + path * low), gap_high = gap_at(view, start + path * high);
   float whole = min(abs(gap_low - gap_high), SLOPE * length);
@@ -73,8 +90,8 @@ bool is_blocked(vec3 from, vec3 to, float jitter)
     is_free |= seen;
     uint turns = ((seen & (hidden >> 1)) | (hidden & (seen >> 1))) & counted & (counted >> 1);
     for (; turns != 0u; turns &= turns - 1u) {
-      float low = (float(findLSB(turns)) + jitter) * each;
-      if (passes_through(view, start, path, low, low + each, length * each)) {
+      float low = (float(findLSB(turns)) + jitter) * each, high = low + each;
+      if (passes_through(view, start, path, low, high, length * each)) {
         return true;
       }
     }

@@ -61,6 +61,14 @@ vec3 project(int view, vec3 place)
   return vec3(projected.xy / max(projected.w, NEAREST), projected.z);
 }
 
+// Where a view's emitters would have the receiver: a place in its grid; far outside of it where it is behind the camera.
+ivec2 place_in_grid(int view, vec3 place)
+{
+  vec3 projected = project(view, place);
+  float blocks = float(views.depths.z) / float(views.emitters[view].w);
+  return projected.z > NEAREST ? ivec2(floor(clamp(projected.xy * blocks, -1e6, 1e6))) : ivec2(-1000000);
+}
+
 // World area, m^2, of what a texel of the view's depth map shows of a surface through this place.
 float shown_area(int view, vec3 place, vec3 normal, float depth)
 {

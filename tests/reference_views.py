@@ -168,15 +168,18 @@ def receiver_of(grid, receivers):
 
 
 def gap_at(eye, places):
-    """(shown, gap): whether the view's frame holds a place, and how far before the surface there it lies; below 0 behind it."""
+    """(shown, gap): whether the view's frame holds a place, and how far before the surface there it lies; below 0 behind it. Beside
+    the frame, what its edge shows."""
     projected = project(eye, places)
-    farthest = depth_at(eye, projected, 1) * FREE_TOLERANCE
-    return farthest > 0, farthest - projected[..., 2]
+    height, width = eye.depths.shape[:2]
+    shown = depth_at(eye, projected) > 0
+    texel = np.clip(projected[..., :2], 0, (width - 1e-9, height - 1e-9)).astype(int)
+    return shown, eye.depths[texel[..., 1], texel[..., 0], 1] * FREE_TOLERANCE - projected[..., 2]
 
 
 def passes_through(eye, start, path, low, high):
-    """(n,) bool: ways that are seen at one end of a step and hidden at the other go through a surface, and not behind the edge
-    of something nearer, where the gap jumps."""
+    """((n,) bool, (n,), (n,)): ways that are seen at one end of a step and hidden at the other go through a surface, and not behind the
+    edge of something nearer, where the gap jumps; and between which shares of them."""
     gap_low, gap_high = (gap_at(eye, start + path * share[:, None])[1] for share in (low, high))
     whole = np.minimum(np.abs(gap_low - gap_high), SLOPE * np.linalg.norm(path, axis=-1) * (high - low))
     for _ in range(BISECTIONS):
@@ -185,7 +188,7 @@ def passes_through(eye, start, path, low, high):
         before = (gap > 0) == (gap_low > 0)
         low, gap_low = np.where(before, middle, low), np.where(before, gap, gap_low)
         high, gap_high = np.where(before, high, middle), np.where(before, gap_high, gap)
-    return np.abs(gap_low - gap_high) < CONTINUOUS * whole
+    return np.abs(gap_low - gap_high) < CONTINUOUS * whole, low, high
 
 
 def is_blocked(eyes, start, end, jitter, steps):
@@ -205,7 +208,7 @@ def is_blocked(eyes, start, end, jitter, steps):
         free |= seen
         within |= hidden & (gap > -thickness)
         step, way = np.nonzero(((seen[:-1] & hidden[1:]) | (hidden[:-1] & seen[1:])) & both)
-        passed[step, way] |= passes_through(eye, start[way], path[way], share[step, way], share[step + 1, way])
+        passed[step, way] |= passes_through(eye, start[way], path[way], share[step, way], share[step + 1, way])[0]
     return passed.any(0) | (within & ~free & counted).any(0)
 
 

@@ -106,7 +106,7 @@ def rna_texts(addon):
 
 
 STAGES = "place views", "EEVEE, views", "write passes", "gather on the GPU", "hand back", "GPU memory", "passes file"
-LIGHT_STAGES = "upload", "pyramid", "gather", "upsample", "read back"
+LIGHT_STAGES = "upload", "pyramid", "gather", "upsample", "read back", "glossy"
 SAID = {"say": 0, "Problem": 0, "GpuUnavailable": 0, "poll_message_set": 0, "_progress": 0}
 
 

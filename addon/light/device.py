@@ -70,7 +70,7 @@ VIEWS = np.dtype([
     ("receivers", np.int32, (MOST_VIEWS, 4)),       # the same
     ("depths", np.int32, 4),                        # width, height of a view's depth map; pixels along a texel; views
     ("draws", np.int32, 4),                         # groups; candidates of each; entries of the table; steps of a way
-    ("odds", np.float32, 4),                        # chance of an emitter: x (power + z) + y, times its area
+    ("odds", np.float32, 4),                        # chance of an emitter: x (power + z) + y, times its area; how far rays go
     ("world", np.float32, (4, 4)),                  # EEVEE's world light, as gather_views() has it
     ("past", np.float32, (4, 4)),                   # the frame before: rows, world to view; scale, offset of base texels
 ])
@@ -131,6 +131,9 @@ PASSES = {
     "smooth": Pass(("camera", "surfel", "views", "bilateral", "smooth"), ("surfels", "irradiance"), "total_out"),
     "reproject": Pass(("camera", "surfel", "views", "reproject"), ("surfels", "past_surfels", "past_light", "motion"), "known_out"),
     "accumulate": Pass(("camera", "surfel", "bilateral", "accumulate"), ("surfels", "irradiance", "known"), "light_out"),
+    "reflect": Pass(("camera", "surfel", "views", "sight", "random", "ggx", "march", "receiver_base", "reflect"),
+                    ("surfels", "gloss", "emitters", "radiance", "depths"), "irradiance_out"),
+    "smooth_gloss": Pass(("camera", "surfel", "bilateral", "smooth_gloss"), ("surfels", "gloss", "irradiance"), "total_out"),
     "probe": Pass(("probe",), ("source",), "probed_out"),
     "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }

@@ -79,15 +79,31 @@ class Passes:
 @dataclass(frozen=True, eq=False)
 class View:
     """A picture of the scene that sends light, and the camera that saw it. source: its Passes, or a function that loads
-    them: each is needed only for a moment, and they are large."""
+    them: each is needed only for a moment, and they are large. shine: a function that loads Passes of the same picture which have
+    Glossy Color and Glossy Direct in the places of the diffuse ones, and no emission; or None where they can't be had."""
 
     source: Passes | Callable[[], Passes]
     camera: Camera
+    shine: Callable[[], Passes | None] = lambda: None
 
     @property
     def passes(self) -> Passes:
         """The passes, loaded again each time where they have to be."""
         return self.source() if callable(self.source) else self.source
+
+
+@dataclass(eq=False)
+class Gloss:
+    """How the surfaces of the picture shine, rows top first, and what gather_views() finds them to show.
+
+    color: EEVEE's Glossy Color, the share of the light that the lobe sends back, (H, W) float32 each. roughness: (H, W) float32,
+    as Blender's materials have it, 0 to 1. picture: (H, W, 3) float32, bottom row first: the indirect light that they reflect, to
+    add to the picture, W sr^-1 m^-2; below 0 where the world's goes. None until it is gathered.
+    """
+
+    color: Triple
+    roughness: np.ndarray
+    picture: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import device
+from . import device, glossy
 from .history import FRAMES, REBUILT, STRIDE, History, accumulate, reproject
-from .inputs import Draws, View
+from .inputs import Draws, Gloss, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
 DEPTHS_ACROSS = 320        # least texels along a depth map's longer side, and emitters along the main view's
@@ -32,15 +32,16 @@ KINDS = "emitters", "receivers"
 
 def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = None, *, history: History | None = None,
                  progress=lambda stage, fraction: False, timings: dict[str, float] | None = None,
-                 broken: dict[str, int] | None = None) -> np.ndarray:
+                 broken: dict[str, int] | None = None, gloss: Gloss | None = None) -> np.ndarray:
     """The indirect light of the first view from the surfaces of all, after settings.bounces.
 
     views: at most device.MOST_VIEWS, all of one resolution. world: (4, 3), by how much EEVEE's world lights a white surface
     with normal n, world[0] + n @ world[1:], W sr^-1 m^-2; what surfaces cover of it is taken away, which needs
     settings.visibility. history: what the frame before left, averaged with this one, which is left there in its place; an
-    empty one where there is none before. Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the
-    picture, W sr^-1 m^-2, below 0 where the world's light goes; 0 on background. progress, timings, broken, GpuUnavailable,
-    Cancelled: as gather_indirect() has them; broken speaks of the first view.
+    empty one where there is none before. gloss: of the first view; its picture is filled in, the mean of settings.gathers.
+    Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1 m^-2, below 0 where the
+    world's light goes; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as gather_indirect() has them;
+    broken speaks of the first view.
     """
     lap = stopwatch(timings)
 
@@ -61,11 +62,18 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
 
     known = reproject(history, base, main, views[0].passes.motion, table) if history else None
     count = settings.gathers if history is None or known else max(settings.gathers, REBUILT)
-    light = None
+    light, shown = None, 0.0
     for number in range(count):
-        gathered = gather(replace(settings, seed=settings.seed + STRIDE * number), table, base, depths, emitters, receivers, lap,
-                          lambda stage, fraction: report(stage, (number + fraction) / count))
+        each = replace(settings, seed=settings.seed + STRIDE * number)
+        gathered, sent, irradiance = gather(each, table, base, depths, emitters, receivers, lap,
+                                            lambda stage, fraction: report(stage, (number + fraction) / count))
         light = accumulate(base, light, gathered, 1, count, drift=False) if count > 1 else gathered
+        if gloss is not None and number < settings.gathers:
+            textures = {"emitters": emitters, "radiance": shining(views, table, depths, irradiance, sent), "depths": depths}
+            shown = shown + glossy.gather(gloss, channels, base, table, each, report, textures)
+            lap("glossy")
+    if gloss is not None:
+        gloss.picture = shown / settings.gathers
     if history:
         light = accumulate(base, known, light, count, (FRAMES - 1) * count, drift=True)
         history.keep(base, light, main)
@@ -80,7 +88,8 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
 
 
 def gather(settings, table, base, depths, emitters, receivers, lap, report):
-    """What the main view's base receives after all bounces, W m^-2: a texture of its size."""
+    """(what the main view's base receives after all bounces, W m^-2: a texture of its size; what emitters send by then; what
+    receivers had gathered for that)."""
     irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
     irradiance.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
     sent = radiate(emitters, irradiance, table)
@@ -101,7 +110,7 @@ def gather(settings, table, base, depths, emitters, receivers, lap, report):
         "surfels": base.surfels, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
         base.parameters, lambda done: report("gather", done))
     lap("gather", gathered)
-    return gathered
+    return gathered, sent, irradiance
 
 
 def smooth(base, light, table):
@@ -138,6 +147,22 @@ def look(views, table, report=lambda stage, fraction: None, broken=None):
             device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
                             device.groups(*table[kind][index][1:3]), table)
     return depths, *targets.values(), channels
+
+
+def shining(views, table, depths, irradiance, sent):
+    """As radiate() gives `sent`, with what the gloss of emitters sends, as if it went into all directions alike: Glossy Color times
+    what lamps and world make of it in their view, and the light that their receivers have gathered."""
+    target, size = device.texture(4 * device.RECORDS_WIDTH, rows_of(table["emitters"])), views[0].passes.size
+    target.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
+    for index, view in enumerate(views):
+        shown = view.shine()
+        if shown is not None:
+            device.dispatch("emit_with_normals" if shown.lacks_normals() else "emit", camera_block(view, index, size),
+                            upload(shown) | {"depths": depths, "records_out": target},
+                            device.groups(*table["emitters"][index][1:3]), table)
+    more = device.read(radiate(target, irradiance, table)).copy()
+    more[..., 3] = 0  # the area, which both have
+    return device.texture(sent.width, sent.height, data=device.read(sent) + more)
 
 
 def start_of(settings, size):
@@ -226,7 +251,7 @@ def draw(name, seed, table, target, textures, block=None, after_band=lambda done
         after_band(done / (across * up))
 
 
-def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
+def gpu_bytes(width: int, height: int, settings: Draws, further: int, shines: bool) -> int:
     """As memory.gpu_bytes()."""
     table = layout(1 + further, (width, height))
     depths = 8 * int(table["depths"][0] * table["depths"][1]) * (1 + further)
@@ -236,8 +261,12 @@ def gpu_bytes(width: int, height: int, settings: Draws, further: int) -> int:
     kept = depths + 64 * (emitters + receivers)
     channel = -(-width // 4) * height * 16
     bouncing = 16 * (base + receivers + 2 * emitters) + 4 * ENTRIES + 7 * channel
-    finishing = 16 * (3 * base + receivers + emitters) + 4 * ENTRIES + 10 * channel
-    return kept + max(13 * channel + 16 * base, bouncing, finishing)
+    finishing = 16 * (4 * base + receivers + emitters) + 4 * ENTRIES + 10 * channel
+    most = max(13 * channel + 16 * base, bouncing, finishing)
+    if shines:
+        held = 16 * (base + receivers + emitters) + 4 * ENTRIES + 7 * channel
+        most = max(most, held + 64 * emitters + max(13 * channel, 16 * emitters), held + glossy.gpu_bytes(base, channel))
+    return kept + most
 
 
 def count_of(grids):

@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass
 
+import bpy
+
 from .. import settings
 from ..translations import say
 from . import cures, relight, wiring
@@ -34,6 +36,9 @@ def findings(scene):
     if cures.probe_volumes(scene):
         found.append(Finding(say("Light probe volumes hold bounced light once they are baked, and ours comes on top. "
                                  "Disable them in renders, or free their bakes"), "PROBES", fatal=False))
+    if wiring.wants_gloss(scene) and holds_reflections(scene):
+        found.append(Finding(say("Light probe spheres and planes hold reflections of the scene already, so the glossy light is left "
+                                 "out. Disable them in renders to have it"), fatal=False))
     if tuple(scene.afterlight.version) > settings.VERSION:
         found.append(Finding(say("These settings were saved by Afterlight {}, and this is {}. What this version does "
                                  "not know is kept in the file, but has no effect", _dotted(scene.afterlight.version),
@@ -46,6 +51,13 @@ def counts_twice(scene):
     difference to that (docs/blender.md)."""
     eevee = scene.eevee
     return scene.render.engine == "BLENDER_EEVEE" and eevee.use_raytracing and eevee.indirect_light_intensity > 0
+
+
+def holds_reflections(scene):
+    """Whether EEVEE's light probes reflect the scene: then ours would come on top."""
+    return any(probe.type in {"SPHERE", "PLANE"} for probe in bpy.data.lightprobes) and any(
+        thing.type == "LIGHT_PROBE" and thing.data.type in {"SPHERE", "PLANE"} and not thing.hide_render
+        for thing in scene.objects)
 
 
 def _of_engine(scene):

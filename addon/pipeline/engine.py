@@ -17,8 +17,8 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, history, passes, relight, status, still, turns, views, wiring, world
-from .nodes import PASS
+from . import checks, history, passes, relight, roughness, status, still, turns, views, wiring, world
+from .nodes import GLOSSY_PASS, PASS
 from .status import Problem
 from .wiring import ENGINE
 
@@ -38,6 +38,7 @@ class Shot:
     settings: light.Settings = None
     goes_on: bool = False            # whether frames of an animation are averaged
     problem: str = ""
+    shines: bool = False             # whether the light off glossy surfaces is wanted
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
 
@@ -60,6 +61,9 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
     def update_render_passes(self, scene, layer):
         if wiring.is_helper(scene):
             self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
+            lit = wiring.source(scene)
+            if lit is not None and wiring.wants_gloss(lit):
+                self.register_pass(scene, layer, GLOSSY_PASS, 3, "RGB", "COLOR")
         else:
             relight.register_passes(self, scene, layer)
 
@@ -82,6 +86,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             frame = again.frame if again else source.frame_current
             shot.goes_on = not again and history.goes_on(source)
             shot.settings = settings.light_settings(source.afterlight, frame, shot.goes_on)
+            shot.shines = wiring.wants_gloss(source) and not checks.holds_reflections(source)
             shot.camera = again.camera if again else self._look(depsgraph, source, shot.layer)
 
     def render(self, depsgraph):
@@ -91,12 +96,12 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             if relight.is_replayed(scene):
                 relight.replay(self, scene, depsgraph.view_layer.name)
             return
-        picture = None
+        pictures = {}
         try:
             if shot.problem:
                 raise Problem("{}", shot.problem)
             with turns.until(self.test_break):
-                picture = self._gather(shot, depsgraph)
+                pictures = self._gather(shot, depsgraph)
         except light.Cancelled:
             pass
         except (Problem, light.GpuUnavailable) as problem:
@@ -106,7 +111,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             self._fail(shot.scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
                                        "report them", error))
         start = time.perf_counter()
-        self._hand_back(shot, picture)
+        self._hand_back(shot, pictures)
         shot.spent("hand back", time.perf_counter() - start)
         status.timed(shot.scene, shot.seconds)
         status.took(shot.scene, shot.memory)
@@ -151,25 +156,28 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             self.views = views.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
             shot.spent("write passes", time.perf_counter() - start)
         path = shot.again.path if shot.again else self.file
-        main = light.View(lambda: passes.load(path, shot.layer, shot.window, shot.scene.frame_step), shot.camera)
+        main = light.View(lambda: passes.load(path, shot.layer, shot.window, shot.scene.frame_step), shot.camera,
+                          lambda: roughness.shine(path, shot.layer, shot.window))
         saved = shot.again.views if shot.again else self.views
         if shot.again and shot.views > shot.again.wanted:
             self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
                                        "the light from all of them", len(saved), shot.views))
-        further = [light.View(view.load, view.camera) for view in saved]
-        shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further)),
+        further = [light.View(view.load, view.camera, view.shine) for view in saved]
+        shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further), shot.shines),
                        "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}
         if isinstance(shot.settings, light.Draws):
             sky = world.light(depsgraph) if shot.scene.afterlight.use_world_shadow else None
+            gloss = self._gloss(shot, path)
             past = history.before(shot.scene, shot.layer, shot.settings) if shot.goes_on else None
-            picture = light.gather_views([main, *further], shot.settings, sky, history=past, **options)
+            picture = light.gather_views([main, *further], shot.settings, sky, history=past, gloss=gloss, **options)
             if past:
                 history.keep(shot.scene, shot.layer, shot.settings, past)
+            picture = {PASS: picture} | ({GLOSSY_PASS: gloss.picture} if gloss else {})
         else:
-            picture = light.gather_indirect(main.passes, shot.camera, shot.settings, **options)
+            picture = {PASS: light.gather_indirect(main.passes, shot.camera, shot.settings, **options)}
         for name, count in broken.items():
             self.report({"WARNING"}, say(
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "
@@ -178,6 +186,15 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
             shot.spent(stage, seconds)
         return picture
+
+    def _gloss(self, shot, path):
+        """light.Gloss of the frame where it is wanted, else None."""
+        if not shot.shines:
+            return None
+        gloss = roughness.load(path, shot.layer, shot.window)
+        if gloss is None:
+            self._warn(shot.scene, say("The last render has no passes for the glossy light. Press F12 to have it"))
+        return gloss
 
     def _progress(self, stage, fraction):
         now = time.perf_counter()
@@ -190,13 +207,16 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         self.update_stats("Afterlight", text)
         self.update_progress(fraction)
 
-    def _hand_back(self, shot, picture):
-        """The indirect light into our pass of the layer; black where there is none."""
+    def _hand_back(self, shot, pictures):
+        """The indirect light into our passes of the layer, by their names; black where there is none."""
         *_, width, height = shot.window
         result = self.begin_result(0, 0, width, height, layer=shot.layer)
-        if picture is None:
-            picture = np.zeros((result.resolution_y, result.resolution_x, 3), np.float32)
-        result.layers[0].passes[PASS].rect.foreach_set(picture.ravel())
+        for made in result.layers[0].passes:
+            if made.name in (PASS, GLOSSY_PASS):
+                picture = pictures.get(made.name)
+                if picture is None:
+                    picture = np.zeros((result.resolution_y, result.resolution_x, 3), np.float32)
+                made.rect.foreach_set(picture.ravel())
         self.end_result(result)
 
 

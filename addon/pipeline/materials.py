@@ -6,6 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 UNKNOWN = 0.5              # albedo where a texture or a group of nodes decides
+# Nodes with a socket "Roughness" that is that of a reflection.
+GLOSSY = {"ShaderNodeBsdfPrincipled", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlossy", "ShaderNodeBsdfMetallic",
+          "ShaderNodeBsdfGlass", "ShaderNodeEeveeSpecular"}
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])   # of linear Rec. 709, as Blender makes a number of a colour
+SAMPLED = 512              # pixels along a side of a texture that are looked at
 DEEPEST = 8                # shader nodes behind one another that are looked through
 
 
@@ -39,6 +44,15 @@ def sky(world):
         return sum(world.color) / 3 if world and not world.node_tree else 0.0
     value = _values(node)
     return value("Color", UNKNOWN) * value("Strength", 1.0)
+
+
+def roughness(material, otherwise):
+    """Roughness of a material's gloss, 0 to 1; of several, the mean by how much each has in a mixture. Textures count as the mean
+    of their picture. otherwise: where it can't be told, or nothing is glossy."""
+    output = material.node_tree.get_output_node("EEVEE") if material.node_tree else None
+    shader = _behind(output.inputs["Surface"]) if output else None
+    total, share = _rough(shader.node, otherwise, DEEPEST) if shader else (0.0, 0.0)
+    return min(max(total / share, 0.0), 1.0) if share > 0 else otherwise
 
 
 @dataclass(frozen=True)
@@ -122,6 +136,51 @@ def _shader(node, depth):
             return first[0] + second[0], first[1] + second[1], min(first[2], second[2])
         return tuple((1 - share) * a + share * b for a, b in zip(first, second))
     return value("Color", UNKNOWN), 0.0, 1.0
+
+
+def _rough(node, otherwise, depth):
+    """(roughness times share, share) of the gloss of a shader."""
+    if node.bl_idname in {"ShaderNodeMixShader", "ShaderNodeAddShader"} and depth:
+        shaders = [_behind(socket) for socket in node.inputs if socket.type == "SHADER"]
+        found = [_rough(each.node, otherwise, depth - 1) if each else (0.0, 0.0) for each in shaders]
+        first = 1 - _values(node)("Fac", UNKNOWN) if node.bl_idname == "ShaderNodeMixShader" else 0.5
+        return tuple(first * a + (1 - first) * b for a, b in zip(*found))
+    if node.bl_idname not in GLOSSY:
+        return 0.0, 0.0
+    socket = node.inputs["Roughness"]
+    source = _behind(socket)
+    if source is None:
+        return (otherwise if socket.links else socket.default_value), 1.0
+    if source.node.bl_idname == "ShaderNodeValue":
+        return source.default_value, 1.0
+    mean = _mean(source.node.image, source.name) if source.node.bl_idname == "ShaderNodeTexImage" else None
+    return (otherwise if mean is None else mean), 1.0
+
+
+def _mean(image, channel):
+    """Mean of the number that an image texture's socket "Color" or "Alpha" gives where a single one is wanted; None without pixels."""
+    width, height = image.size if image else (0, 0)
+    if not width or image.channels < 3:
+        return None
+    pixels = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, -1)[::max(1, height // SAMPLED), ::max(1, width // SAMPLED)].astype(float)
+    if channel == "Alpha":
+        return float(pixels[..., 3].mean()) if image.channels > 3 else 1.0
+    color = pixels[..., :3]
+    if not image.is_float and image.colorspace_settings.name == "sRGB":
+        color = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
+    return float((color @ LUMINANCE).mean())
+
+
+def _behind(socket):
+    """The socket that a socket is linked to, behind reroutes and muted nodes' own links; None where there is none."""
+    while socket.links:
+        socket = socket.links[0].from_socket
+        if socket.node.bl_idname != "NodeReroute":
+            return socket
+        socket = socket.node.inputs[0]
+    return None
 
 
 def _linked(socket):

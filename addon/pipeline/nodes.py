@@ -5,12 +5,18 @@
                                                      add: A + B -> whatever used the image
     light: Render Layers (helper, layer).Indirect -- B
 
+Where the glossy light is wanted as well, it is added to the light before that:
+
+    light.Indirect ----------- A
+                               gloss: A + B -> B of add
+    light.Indirect Glossy ---- B
+
 Nodes of ours carry the custom property MARK with their role. All that is known is read off the nodes themselves, so
 what a user moves, renames or deletes is never restored from a record that has gone stale.
 """
 
 MARK = "afterlight"
-PASS = "Indirect"
+PASS, GLOSSY_PASS = "Indirect", "Indirect Glossy"
 A, B, RESULT = "A_Color", "B_Color", "Result_Color"
 
 
@@ -31,7 +37,7 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
+    """"add", "light", "gloss", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
     return node.get(MARK)
 
 
@@ -45,6 +51,16 @@ def pictures(tree, scene):
     return [node for node in all_nodes(tree) if shows(node, scene) and role(node) != "light"]
 
 
+def used_passes(scene, layer):
+    """Names of the passes of a view layer that the compositor of `scene` uses."""
+    tree = scene.compositing_node_group
+    used = {output.name for node in pictures(tree, scene) if node.layer == layer for output in node.outputs if output.is_linked}
+    if any(node.bl_idname == "CompositorNodeCryptomatteV2" and node.source == "RENDER" and node.scene == scene
+           for node in all_nodes(tree)):  # which reads them without a link
+        used.add("CryptoMaterial00")
+    return used
+
+
 def goes_dark(node):
     """Whether somebody uses the image of this Render Layers node without our light in it."""
     return any(role(link.to_node) != "add" for link in node.outputs["Image"].links)
@@ -53,7 +69,7 @@ def goes_dark(node):
 def lost_image(tree, scene, helper):
     """View layers whose adding node is gone together with the links it had: nobody uses their image any more."""
     found = []
-    for light in [node for node in tree.nodes if shows(node, helper) and not node.outputs[PASS].is_linked]:
+    for light in [node for node in tree.nodes if shows(node, helper) and _is_idle(node)]:
         images = [picture.outputs["Image"] for picture in tree.nodes if _same_layer(picture, light, scene)]
         if images and not any(image.is_linked for image in images):
             found.append(light.layer)
@@ -69,11 +85,7 @@ def splice(tree, picture, helper):
     if not links:
         return
     users = [(link.to_socket, link.is_muted) for link in links]
-    add = _new(tree, "ShaderNodeMix", "add")
-    add.name = add.label = "Afterlight"
-    add.data_type, add.blend_type, add.clamp_result = "RGBA", "ADD", False
-    socket(add.inputs, "Factor_Float").default_value = 1.0
-    socket(add.inputs, B).default_value = (0.0, 0.0, 0.0, 1.0)
+    add = _sum(tree, "add", "Afterlight")
     light = _light_for(tree, picture, helper)
     for user, is_muted in users:
         tree.links.new(socket(add.outputs, RESULT), user).is_muted = is_muted
@@ -87,6 +99,7 @@ def splice(tree, picture, helper):
 
 def unsplice(tree, scene, helper):
     """Take out what splice() put in for `scene`, and give its users the plain image again."""
+    unsplice_gloss(tree, helper)
     lights = [node for node in tree.nodes if role(node) == "light" and node.scene in (helper, None)]
     for add in [node for node in tree.nodes if role(node) == "add"]:
         light, picture = source(add, B), source(add, A)
@@ -98,6 +111,55 @@ def unsplice(tree, scene, helper):
                 tree.links.new(plain, user).is_muted = is_muted
     for light in lights:
         tree.nodes.remove(light)
+
+
+def splice_gloss(tree, scene, helper):
+    """Put the glossy light of `helper` between its light and the nodes that add it to the picture."""
+    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
+        given = next((link.from_socket for link in socket(add.inputs, B).links), None)
+        picture = source(add, A)
+        light = next((node for node in tree.nodes if shows(node, helper) and node.layer == picture.layer), None)
+        if given is None or light is None:
+            continue
+        gloss = given.node
+        if role(gloss) != "gloss":
+            gloss = _sum(tree, "gloss", "Afterlight: Glossy")
+            tree.links.new(given, socket(gloss.inputs, A))
+            tree.links.new(socket(gloss.outputs, RESULT), socket(add.inputs, B))
+            gloss.parent, gloss.hide = add.parent, True
+            gloss.location = add.location[0] - 40, add.location[1] - 200
+        if not source(gloss, B):
+            tree.links.new(light.outputs[GLOSSY_PASS], socket(gloss.inputs, B))
+
+
+def unsplice_gloss(tree, helper):
+    """Take out what splice_gloss() put in."""
+    for gloss in [node for node in tree.nodes if role(node) == "gloss"]:
+        light = source(gloss, B)
+        if light is None or light.scene in (helper, None):
+            given = next((link.from_socket for link in socket(gloss.inputs, A).links), None)
+            users = [link.to_socket for link in socket(gloss.outputs, RESULT).links]
+            tree.nodes.remove(gloss)
+            for user in users if given else ():
+                tree.links.new(given, user)
+
+
+def lacks_gloss(tree, scene):
+    """Whether a node that adds light to the picture of `scene` adds no glossy light."""
+    lights = [source(node, B) for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]
+    return any(light and (role(light) != "gloss" or not source(light, B)) for light in lights)
+
+
+def shows_picture(add, scene):
+    """Whether an adding node adds to the picture of `scene`."""
+    picture = source(add, A)
+    return picture is not None and shows(picture, scene)
+
+
+def light_of(add):
+    """The node whose light an adding node adds, before the glossy light comes to it."""
+    node = source(add, B)
+    return source(node, A) if node and role(node) == "gloss" else node
 
 
 def light_node(tree, helper, layer):
@@ -164,7 +226,7 @@ def retarget(tree, scene, old, helper):
             if layer in helper.view_layers:
                 node.layer = layer
     for add in [node for node in tree.nodes if role(node) == "add"]:
-        light, picture = source(add, B), source(add, A)
+        light, picture = light_of(add), source(add, A)
         if light and picture and role(light) == "light" and light.scene == helper and shows(picture, scene):
             if light.layer != picture.layer:
                 light.layer = picture.layer
@@ -189,13 +251,29 @@ def assign(data, name, value):
 def _light_for(tree, picture, helper):
     """A light node for the layer of `picture`: one that lost its adding node, or a new one."""
     idle = (node for node in tree.nodes if shows(node, helper) and node.layer == picture.layer
-            and not node.outputs[PASS].is_linked)
+            and _is_idle(node))
     return next(idle, None) or light_node(tree, helper, picture.layer)
+
+
+def _is_idle(light):
+    """Whether nothing uses the light of one of our Render Layers nodes, or only a gloss node that nothing uses."""
+    return not any(role(link.to_node) != "gloss" or socket(link.to_node.outputs, RESULT).is_linked
+                   for link in light.outputs[PASS].links)
 
 
 def _same_layer(picture, light, scene):
     return (picture.bl_idname == light.bl_idname and picture.layer == light.layer
             and picture.scene == scene)
+
+
+def _sum(tree, kind, name):
+    """A node that adds B to A."""
+    node = _new(tree, "ShaderNodeMix", kind)
+    node.name = node.label = name
+    node.data_type, node.blend_type, node.clamp_result = "RGBA", "ADD", False
+    socket(node.inputs, "Factor_Float").default_value = 1.0
+    socket(node.inputs, B).default_value = (0.0, 0.0, 0.0, 1.0)
+    return node
 
 
 def _new(tree, idname, kind):

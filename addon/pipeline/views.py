@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light
 from ..translations import say
-from . import lenses, nodes, passes, placement, still
+from . import lenses, nodes, passes, placement, roughness, still
 from .nodes import MARK
 from .status import Problem
 
@@ -96,6 +96,7 @@ def follow(scene):
 
 def mirror(scene):
     """Give the view scenes what decides how the surfaces of `scene` look."""
+    from . import wiring
     layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
     for each in _own(scene):
         own = each.view_layers[0]
@@ -109,6 +110,8 @@ def mirror(scene):
                              _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier)))
         nodes.assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
         nodes.assign(each, "background_set", scene)
+        for switch, _ in (roughness.COLOR, roughness.DIRECT):
+            nodes.assign(own, switch, each.get(MARK) == "view" and wiring.wants_gloss(scene))
 
 
 def faults(scene):
@@ -201,6 +204,10 @@ class Saved:
     def load(self):
         """light.Passes of the view. Raises status.Problem."""
         return passes.load(self.path, self.layer, self.window)
+
+    def shine(self):
+        """As light.View has it."""
+        return roughness.shine(self.path, self.layer, self.window)
 
 
 def save(scene, depsgraph, warn):

@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import nodes, views, world
+from . import nodes, roughness, views, world
 from .nodes import MARK
 from .passes import MOTION, PASSES, needed
 
@@ -28,6 +28,12 @@ def connect(scene):
     if nodes.pictures(tree, scene) and not any(nodes.shows(node, helper) for node in tree.nodes):
         # Blender looks for scenes to render only among the nodes of the top level, not in groups.
         nodes.light_node(tree, helper, nodes.pictures(tree, scene)[0].layer).location = (-400, -400)
+    _offer_passes(helper)
+    for group in nodes.trees(tree):
+        if wants_gloss(scene):
+            nodes.splice_gloss(group, scene, helper)
+        else:
+            nodes.unsplice_gloss(group, helper)
     follow(scene)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
@@ -37,6 +43,12 @@ def connect_if_enabled(scene):
     """For settings that decide what connect() makes."""
     if scene.afterlight.enabled and scene.library is None:
         connect(scene)
+
+
+def wants_gloss(scene):
+    """Whether the light off glossy surfaces is to be gathered."""
+    settings = scene.afterlight
+    return settings.enabled and settings.use_glossy and settings.method == "RADIOSITY"
 
 
 def follow(scene):
@@ -57,7 +69,7 @@ def follow(scene):
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
         if layer.name in lit:
-            _switch_passes(scene, layer, needed(scene.afterlight))
+            _switch_passes(scene, layer, _passes_of(scene, layer))
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
         helper.name = _helper_name(scene)
 
@@ -131,7 +143,9 @@ def faults(scene):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if views.faults(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
-    if any(mirror.use and not all(getattr(layer, switch) for _, switch, _, _ in needed(scene.afterlight))
+    if wants_gloss(scene) and any(nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
+        found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
+    if any(mirror.use and not all(getattr(layer, switch) for switch, _ in _passes_of(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
     return found
@@ -245,21 +259,32 @@ def _restore_tree(scene):
     settings.compositing_was_off = False
 
 
+def _offer_passes(helper):
+    """Let the Render Layers nodes of `helper` offer the passes that its engine gives now."""
+    for layer in helper.view_layers:
+        layer.update_render_passes()
+
+
+def _passes_of(scene, layer):
+    """(switch, pass) of all that is read of a view layer."""
+    return [*((switch, name) for _, switch, name, _ in needed(scene.afterlight)),
+            *(roughness.needed(layer) if wants_gloss(scene) else ())]
+
+
 def _switch_passes(scene, layer, wanted):
-    """Switch on what is wanted of PASSES and MOTION, and off what we once switched on and is not, but for passes that the user's
-    own nodes have come to use."""
-    ours = set(layer.get(MARK, ()))
-    wanted = {switch for _, switch, _, _ in wanted}
-    used = {output.name for node in nodes.pictures(scene.compositing_node_group, scene) if node.layer == layer.name
-            for output in node.outputs if output.is_linked}
-    for _, switch, name, _ in (*PASSES, MOTION):
+    """Switch on what is wanted, (switch, pass) each, and off what we once switched on and is not wanted, but for passes that the
+    user's own nodes have come to use."""
+    ours, wanted = set(layer.get(MARK, ())), {switch for switch, _ in wanted}
+    unwanted = ours - wanted
+    used = nodes.used_passes(scene, layer.name) if unwanted else ()
+    for switch, name in (*((switch, name) for _, switch, name, _ in (*PASSES, MOTION)),
+                         roughness.COLOR, roughness.DIRECT, roughness.MATERIAL):
         if switch in wanted and not getattr(layer, switch):
             ours.add(switch)
             setattr(layer, switch, True)
-        elif switch in ours - wanted:
-            ours.discard(switch)
-            if name not in used:
-                setattr(layer, switch, False)
+        elif switch in unwanted and name not in used:
+            setattr(layer, switch, False)
+    ours -= unwanted
     if ours != set(layer.get(MARK, ())):
         if ours:
             layer[MARK] = sorted(ours)

@@ -3,6 +3,20 @@
 
 TEXTS = {
     # Settings
+    "Glossy Light": "Glänzendes Licht",
+    "Let glossy surfaces reflect the bounced light, and the surfaces that the views show. Takes about as much time as the "
+    "gather without it, and two more passes of EEVEE":
+        "Glänzende Flächen das indirekte Licht und die Flächen spiegeln lassen, die die Ansichten zeigen. Dauert etwa so lange wie "
+        "das Sammeln ohne es und braucht zwei weitere Passes von EEVEE",
+    "The glossy light is no longer linked to the node that adds it":
+        "Das glänzende Licht ist nicht mehr mit dem Node verbunden, der es addiert",
+    "Light probe spheres and planes hold reflections of the scene already, so the glossy light is left out. Disable them in "
+    "renders to have it":
+        "Lichtsonden (Kugeln und Ebenen) enthalten bereits Spiegelungen der Szene, daher bleibt das glänzende Licht weg. Im Rendering "
+        "ausblenden, um es zu haben",
+    "The last render has no passes for the glossy light. Press F12 to have it":
+        "Das letzte Rendern hat keine Passes für das glänzende Licht. F12 drücken, um es zu haben",
+    "Glossy": "Glanz",
     "Indirect Light": "Indirekte Beleuchtung",
     "Add one bounce of indirect light to EEVEE's renders, gathered from the passes of the finished frame. To fade it "
     "in an animation, put keyframes on Strength":
