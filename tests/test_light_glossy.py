@@ -249,8 +249,10 @@ def test_the_diffuse_light_does_not_depend_on_gloss(light):
     np.testing.assert_array_equal(plain, shining)
 
 
-@pytest.mark.parametrize("size, start", [((640, 360), 2), ((960, 544), 4)])
-def test_memory_is_what_the_textures_take(light, monkeypatch, size, start):
+@pytest.mark.parametrize("shines, averages, gathers", [
+    (True, False, 1), (False, False, 1), (False, True, 1), (True, True, 1), (False, True, 3), (True, False, 2)])
+@pytest.mark.parametrize("size, start", [((640, 360), 2), ((960, 544), 4), ((400, 300), 1)])
+def test_memory_is_what_the_textures_take(light, monkeypatch, size, start, shines, averages, gathers):
     """The whole way with textures that only count themselves."""
     held = most = 0
 
@@ -278,9 +280,14 @@ def test_memory_is_what_the_textures_take(light, monkeypatch, size, start):
     passes = light.Passes(plane, *[(plane,) * 3] * 4)
     camera = light.Camera(np.eye(3), np.ones(2), np.zeros(2))
     views = [light.View(passes, camera, lambda: passes)] * 3
-    chosen = draws(light, start=start, bounces=2)
-    light.gather_views(views, chosen, gloss=light.Gloss((plane,) * 3, plane))
-    assert light.gpu_bytes(*size, chosen, 2, shines=True) == most and held == 0
+    chosen = draws(light, start=start, bounces=2, gathers=gathers)
+    past = light.History() if averages else None
+    for _ in range(2):
+        most = held
+        light.gather_views(views, chosen, history=past, gloss=light.Gloss((plane,) * 3, plane) if shines else None)
+    assert light.gpu_bytes(*size, chosen, 2, shines=shines, averages=averages) == most
+    del past
+    assert held == 0
 
 
 def test_gloss_shows_the_gloss_that_it_meets(light):

@@ -9,11 +9,12 @@ TEXEL = 16                 # bytes of RGBA32F and RGBA32UI
 PASSES, LIGHT = 13, 6      # channels that are uploaded, and those of them that go once the surfels are packed
 
 
-def gpu_bytes(width: int, height: int, settings: Settings | Draws, further: int = 0, shines: bool = False) -> int:
-    """Bytes of textures that gather_indirect(), or gather_views() with so many further views and perhaps with Gloss, has on the GPU at its
-    fullest, for a frame of width x height pixels."""
+def gpu_bytes(width: int, height: int, settings: Settings | Draws, further: int = 0, *, shines: bool = False,
+              averages: bool = False) -> int:
+    """Bytes of textures that gather_indirect(), or gather_views() with so many further views, has on the GPU at its fullest, for a
+    frame of width x height pixels. shines, averages: with Gloss, with a History of the frame before."""
     if isinstance(settings, Draws):
-        return views.gpu_bytes(width, height, settings, further, shines)
+        return views.gpu_bytes(width, height, settings, further, shines, averages)
     channel = -(-width // 4) * height * TEXEL
     boxes = level_boxes(-(-width // settings.start), -(-height // settings.start), settings.radius)
     pyramid = max(x + w for x, _, w, _ in boxes) * max(y + h for _, y, _, h in boxes) * TEXEL

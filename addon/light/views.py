@@ -72,6 +72,8 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
             textures = {"emitters": emitters, "radiance": shining(views, table, depths, irradiance, sent), "depths": depths}
             shown = shown + glossy.gather(gloss, channels, base, table, each, report, textures)
             lap("glossy")
+            del textures
+        del gathered, sent, irradiance
     if gloss is not None:
         gloss.picture = shown / settings.gathers
     if history:
@@ -138,7 +140,7 @@ def look(views, table, report=lambda stage, fraction: None, broken=None):
     targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
     for index in reversed(range(len(views))):  # the main one last: its channels are needed again
         report("views", 1 - (index + 1) / len(views) / 2)
-        shown = views[index].passes
+        channels, shown = None, views[index].passes  # none of two views at a time
         channels = upload(shown, None if index else broken)
         name = "emit_with_normals" if shown.lacks_normals() else "emit"
         for kind, target in targets.items():
@@ -251,22 +253,30 @@ def draw(name, seed, table, target, textures, block=None, after_band=lambda done
         after_band(done / (across * up))
 
 
-def gpu_bytes(width: int, height: int, settings: Draws, further: int, shines: bool) -> int:
+def gpu_bytes(width: int, height: int, settings: Draws, further: int, shines: bool, averages: bool) -> int:
     """As memory.gpu_bytes()."""
     table = layout(1 + further, (width, height))
     depths = 8 * int(table["depths"][0] * table["depths"][1]) * (1 + further)
     emitters, receivers = (device.RECORDS_WIDTH * rows_of(table[kind]) for kind in KINDS)
     start = start_of(settings, (width, height))
     base = -(-width // start) * -(-height // start)
-    kept = depths + 64 * (emitters + receivers)
     channel = -(-width // 4) * height * 16
-    bouncing = 16 * (base + receivers + 2 * emitters) + 4 * ENTRIES + 7 * channel
-    finishing = 16 * (4 * base + receivers + emitters) + 4 * ENTRIES + 10 * channel
-    most = max(13 * channel + 16 * base, bouncing, finishing)
+    past = 2 * 16 * base if averages else 0   # surfels and light of the frame before
+    known = 16 * base if averages else 0
+    mean = 16 * base if settings.gathers > 1 else 0
+    records = depths + 64 * (emitters + receivers)
+    packed = records + 16 * base + 7 * channel
+    gathering = packed + past + known + mean + 16 * (receivers + emitters)
+    steps = [packed + 6 * channel + past,
+             gathering + max(4 * ENTRIES + 16 * max(emitters, base), 8 * ENTRIES),  # bounces, then the base
+             packed + known + 16 * 3 * base,                                        # smoothed twice
+             packed + known + 16 * 2 * base + 3 * channel]                          # composited
+    if mean:
+        steps.append(gathering + 16 * 2 * base)
     if shines:
-        held = 16 * (base + receivers + emitters) + 4 * ENTRIES + 7 * channel
-        most = max(most, held + 64 * emitters + max(13 * channel, 16 * emitters), held + glossy.gpu_bytes(base, channel))
-    return kept + most
+        gathered = gathering + 16 * base
+        steps += [gathered + 64 * emitters + max(13 * channel, 16 * emitters), gathered + 16 * emitters + glossy.gpu_bytes(base, channel)]
+    return max(steps)
 
 
 def count_of(grids):

@@ -163,7 +163,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             self._warn(shot.scene, say("The last render had {} further views, and there are {} in the settings now. Press F12 for "
                                        "the light from all of them", len(saved), shot.views))
         further = [light.View(view.load, view.camera, view.shine) for view in saved]
-        shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further), shot.shines),
+        shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further), shines=shot.shines,
+                                                     averages=shot.goes_on),
                        "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
