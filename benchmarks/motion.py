@@ -204,25 +204,28 @@ def parse(arguments):
 def main(arguments):
     options = parse(arguments)
     afterlight = session.enable_afterlight()
+    report, of = motion_report, measure
+    if options.farm:
+        from . import motion_farm as report  # here: it takes the ways from this module
+        of = report.measure
     rows, failed = [], False
     for path in options.paths:
         print(f"{path.name}:", file=sys.stderr, flush=True)
-        if options.farm:
-            from . import motion_farm
-            rows += motion_farm.measure(path, options, afterlight)
+        try:
+            found = of(path, options, afterlight)
+        except candidates.Unmeasurable as reason:
+            print(f"{path.name} cannot be measured: {reason}", file=sys.stderr)
+            failed = True
             continue
-        shot = measure(path, options, afterlight)
-        failed |= bool(shot.failures)
-        rows += shot.rows()
-        if options.sheet:
-            sheet = options.sheet if len(options.paths) == 1 else options.sheet.with_stem(f"{path.stem}_{options.sheet.stem}")
-            shot.sheet(sheet, options.sheet_frame)
-        print(motion_report.page(options, shot.rows()), flush=True)
-    text = motion_report.page(options, rows)
-    if options.page:
-        options.page.write_text(text)
-    elif len(options.paths) > 1 or options.farm:
-        print(text)
+        failed |= bool(found.failures)
+        rows += found.rows()
+        text = report.page(options, rows)
+        print(text, flush=True)
+        if options.page:  # after each shot: an hour's work must not hang on the last
+            options.page.write_text(text)
+        if options.sheet and not options.farm:
+            several = len(options.paths) > 1
+            found.sheet(options.sheet.with_stem(f"{path.stem}_{options.sheet.stem}") if several else options.sheet, options.sheet_frame)
     return int(failed)
 
 

@@ -6,6 +6,7 @@ to the farm, so that all jobs begin with the same views. What is left between th
 difference of two seeds without history."""
 
 import tempfile
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +17,24 @@ HEAD = ("| shot | way | first frame of the part | mean of its others | largest o
         "|---|---|---:|---:|---:|")
 
 
+@dataclass
+class Parts:
+    """What was found of one shot. found: by way, (frames,) differences in the noise of one frame. failures: by way, why not."""
+
+    name: str
+    found: dict = field(default_factory=dict)
+    failures: dict = field(default_factory=dict)
+
+    def rows(self):
+        """Markdown, a row a way."""
+        return [f"| {self.name} | {way} | {each[0]:.3f} | {each[1:].mean():.3f} | {each[1:].max():.3f} |"
+                for way, each in self.found.items()] + [
+            f"| {self.name} | {way} | failed: {reason} | | |" for way, reason in self.failures.items()]
+
+
 def measure(path, options, afterlight):
-    """The rows of one shot, for each of Afterlight's ways."""
-    rows = []
+    """Parts, for each of Afterlight's ways."""
+    shot = Parts(path.stem)
     for name in options.ways:
         if name in motion.ALONE:
             continue
@@ -26,13 +42,12 @@ def measure(path, options, afterlight):
         try:
             with tempfile.TemporaryDirectory(prefix="afterlight-farm-") as folder:
                 file = sent(path, way, Path(folder), options, afterlight)
-                found = difference(part(file, half=False), part(file, half=True))
-                found /= difference(*(part(sent(path, plain, Path(folder), options, afterlight, seed), half=True) for seed in (0, 1)))
+                apart = difference(part(file, half=False), part(file, half=True))
+                seeds = (part(sent(path, plain, Path(folder), options, afterlight, seed), half=True) for seed in (0, 1))
+                shot.found[way.name] = apart / difference(*seeds)
         except candidates.Unmeasurable as reason:
-            rows.append(f"| {path.stem} | {way.name} | failed: {reason} | | |")
-            continue
-        rows.append(f"| {path.stem} | {way.name} | {found[0]:.3f} | {found[1:].mean():.3f} | {found[1:].max():.3f} |")
-    return rows
+            shot.failures[way.name] = str(reason)
+    return shot
 
 
 def sent(path, way, folder, options, afterlight, seed=0):

@@ -59,9 +59,10 @@ class Shot:
 
     def row(self, name):
         light = self.light[name]
-        variance = measures.flicker(self.errors(name), self.noise, self.tracks)[self.steady].mean() / self.mean ** 2
+        by_frame = measures.flicker(self.errors(name), self.noise, self.tracks)[self.steady] / self.mean ** 2
+        variance, spread = by_frame.mean(), by_frame.std() / np.sqrt(max(len(by_frame) - 1, 1))
         return (f"| {self.name} | {name} | {light.mean(dtype=float) / self.mean:.3f} | {self.error(name):.3f} "
-                f"| {np.sqrt(max(variance, 0)):.4f} | {variance:.6f} | {self.lag(name)} | {self.trails(name)} "
+                f"| {np.sqrt(max(variance, 0)):.4f} | {variance:.6f} ± {spread:.6f} | {self.lag(name)} | {self.trails(name)} "
                 f"| {self.seconds[name] / len(light):.1f} |")
 
     def row_of_noise(self):
@@ -94,9 +95,8 @@ class Shot:
         matplotlib.use("Agg")
         from matplotlib import pyplot
         after = (measures.switch(self.truth) or len(self.truth) // 2 - 1) + 1
-        frame = min(after, len(self.truth) - 1) if number is None else number - self.first
-        if not 0 < frame < len(self.truth):
-            raise ValueError(f"the sheet's frame must be from {self.first + 1} to {self.first + len(self.truth) - 1}")
+        frame = after if number is None else number - self.first
+        frame = min(max(frame, 1), len(self.truth) - 1)  # the first has none before it
         names, track = list(self.light), self.tracks[frame - 1]
         figure, axes = pyplot.subplots(3, len(names) + 1, figsize=(2.9 * (len(names) + 1), 5.4), layout="constrained", squeeze=False)
         white = np.percentile(self.truth[frame], 99)
@@ -105,15 +105,13 @@ class Shot:
             light = self.truth if name == "Cycles" else self.light[name]
             axes[0, column].imshow((light[frame] / white).clip(0, 1) ** (1 / 2.2))
             axes[0, column].set_title(name, fontsize=8)
-            if name == "Cycles":
-                errors, rest = self.noise, (" its own noise", " noise's change")
-            else:
-                errors, rest = self.errors(name), (" error", " error's change")
+            errors, kind = (self.noise, "its own noise") if name == "Cycles" else (self.errors(name), "error")
             change = np.full(self.truth.shape[1:3], np.nan)
             change[track.now] = (errors[frame][track.now] - errors[frame - 1][track.then]).mean(-1)
-            for row, (picture, reach) in enumerate(((errors[frame].mean(-1), 0.5), (change, 0.2)), 1):
+            pictures = (kind, errors[frame].mean(-1), 0.5), (f"{kind}: change from the frame before", change, 0.2)
+            for row, (title, picture, reach) in enumerate(pictures, 1):
                 shown = axes[row, column].imshow(picture / self.mean, cmap="RdBu_r", vmin=-reach, vmax=reach)
-                axes[row, column].set_title(rest[row - 1].strip(), fontsize=7)
+                axes[row, column].set_title(title, fontsize=7)
                 if column == len(titles) - 1:
                     bar = figure.colorbar(shown, ax=axes[row, :], shrink=0.8)
                     bar.set_label("of the shot's mean light", fontsize=7)
@@ -130,16 +128,14 @@ class Shot:
 
 def page(options, rows):
     """The page in Markdown: the command, and what its columns say."""
-    if options.farm:
-        from . import motion_farm
-        return motion_farm.page(options, rows)
     width, height = options.size
     return "\n".join([
         f"`{options.command}`", "",
-        f"{width} x {height}, EEVEE with {options.samples} samples, Cycles with {2 * options.truth_samples} and four diffuse bounces. All is over "
-        "the mean indirect light of the shot. Energy: the mean light. Error: relative L1, the reference's noise taken off. Flicker: root mean "
-        "square change of the error between frames, along the true motion, where both frames show the surface and no edge is within a "
-        "pixel, but for the frame of a switch; that noise taken off, too. Variance: its square. EEVEE alone, whose error is all of the "
-        "light, shows what the truth's own change and tracks of whole pixels come to; a way that errs less has less of both. Lag: frames "
-        "after a switch until 95 % of the change has arrived. Trails: where history worsens the mean error of 8 x 8 pixels most.", "",
+        f"{width} x {height}, EEVEE with {options.samples} samples, Cycles with {2 * options.truth_samples} and four diffuse bounces. "
+        "All is over the mean indirect light of the shot. Energy: the mean light. Error: relative L1, the reference's noise taken off. "
+        "Flicker: root mean square change of the error between frames, along the true motion, where both frames show the surface and "
+        "no edge is within a pixel, but for the frame of a switch; that noise taken off, too. Variance: its square, and the standard "
+        "error of that over the frames. EEVEE alone, whose error is all of the light, shows what the truth's own change and tracks of "
+        "whole pixels come to; a way that errs less has less of both. Lag: frames after a switch until 95 % of the change has arrived. "
+        "Trails: where history worsens the mean error of 8 x 8 pixels most.", "",
         HEAD, *rows, ""])
