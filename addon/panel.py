@@ -117,6 +117,7 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
             column.prop(settings, "draws")
             column.prop(settings, "accumulate")
             column.prop(settings, "use_history")
+            column.prop(settings, "denoise")
             column.prop(settings, "bounces")
             column.prop(settings, "use_visibility")
             row = column.row()

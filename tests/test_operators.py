@@ -17,7 +17,7 @@ def test_settings_go_to_other_scenes(scene, addon):
     settings, names = scene.afterlight, [parameter.name for parameter in addon.settings.PARAMETERS]
     mine = dict(method="RADIOSITY", strength=0.5, start="QUARTER", samples=100, radius=9, draws=5, bounces=2,
                 use_visibility=False, use_world_shadow=False, use_glossy=True, views="AUTOMATIC", view_count=2, accumulate=2,
-                use_history=False, seed=3, use_animated_seed=True)
+                use_history=False, denoise="NONE", seed=3, use_animated_seed=True)
     assert sorted(mine) == sorted(names)
     assert not bpy.ops.afterlight.copy_settings.poll(), "there is no other scene"
     for name, value in mine.items():
@@ -161,7 +161,7 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
     radiosity = {"draws": (1, 2, 3), "bounces": (1, 2, 3), "use_visibility": (True, False, True),
                  "use_world_shadow": (True, True, False), "accumulate": (1, 2, 3)}
     # They decide which scenes and passes there are, and stay as they are.
-    wiring = {"method", "views", "view_count", "use_glossy", "use_history"}
+    wiring = {"method", "views", "view_count", "use_glossy", "use_history", "denoise"}
     assert keyed.keys() | radiosity.keys() | wiring == {parameter.name for parameter in addon.settings.PARAMETERS}
     for name, values in keyed.items():
         for frame, value in enumerate(values, 1):

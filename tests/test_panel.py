@@ -21,7 +21,7 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
 
     names = {parameter.name for parameter in addon.settings.PARAMETERS}
     paper, radiosity = {"samples", "radius"}, {"draws", "bounces", "use_visibility", "use_world_shadow", "use_glossy",
-                                                "views", "view_count", "accumulate", "use_history"}
+                                                "views", "view_count", "accumulate", "use_history", "denoise"}
     for method, others in (("RADIOSITY", paper), ("PAPER", radiosity)):
         scene.afterlight.method = method
         assert {arguments[1] for kind, arguments, _, _ in settings() if kind == "prop"} == names - others

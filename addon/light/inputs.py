@@ -112,8 +112,8 @@ class Draws:
 
     start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: draws of a base texel whose way is
     looked along, at most MOST_GROUPS; candidates: emitters weighed for each. bounces: how often the light is passed on, 1 and
-    more. visibility: whether surfaces hide what lies behind them. gathers: of which the picture is the mean. seed, strength: as
-    in Settings. Raises ValueError for anything else."""
+    more. visibility: whether surfaces hide what lies behind them. gathers: of which the picture is the mean. smooth: whether
+    neighbours are averaged. seed, strength: as in Settings. Raises ValueError for anything else."""
 
     start: int
     groups: int = 16
@@ -123,6 +123,7 @@ class Draws:
     seed: int = 0
     strength: float = 1.0
     gathers: int = 1
+    smooth: bool = True
 
     def __post_init__(self):
         _check_start(self.start)

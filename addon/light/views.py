@@ -27,6 +27,7 @@ ENTRIES = 1 << 18          # of the table that emitters are drawn from
 BY_AREA = 0.5              # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
 BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
 SMOOTH_STEPS = 1, 2        # texels between the taps of each pass that smooths
+UNSMOOTHED = 0,            # all taps are the texel itself
 KINDS = "emitters", "receivers"
 
 
@@ -81,7 +82,7 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
         history.keep(base, light, main)
 
     report("upsample", 1.0)
-    indirect = composite(channels, base, smooth(base, light, table))
+    indirect = composite(channels, base, smooth(base, light, table, SMOOTH_STEPS if settings.smooth else UNSMOOTHED))
     lap("upsample", indirect)
     width, height = size
     picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
@@ -115,12 +116,12 @@ def gather(settings, table, base, depths, emitters, receivers, lap, report):
     return gathered, sent, irradiance
 
 
-def smooth(base, light, table):
+def smooth(base, light, table, steps=SMOOTH_STEPS):
     """The base's irradiance with less noise: a texture of its size."""
     *_, across, up = base.boxes[0]
     block = base.parameters.copy()
-    for step in SMOOTH_STEPS:
-        block["span"][:2] = step, step == SMOOTH_STEPS[-1]
+    for step in steps:
+        block["span"][:2] = step, step == steps[-1]
         total = device.texture(across, up)
         device.dispatch("smooth", block, {"surfels": base.surfels, "irradiance": light, "total_out": total},
                         device.groups(across, up), table)

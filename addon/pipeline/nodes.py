@@ -11,6 +11,8 @@ Where the glossy light is wanted as well, it is added to the light before that:
                                gloss: A + B -> B of add
     light.Indirect Glossy ---- B
 
+Where Blender's Denoise node is wanted, it comes first: light.Indirect -> denoise -> what used it.
+
 Nodes of ours carry the custom property MARK with their role. All that is known is read off the nodes themselves, so
 what a user moves, renames or deletes is never restored from a record that has gone stale.
 """
@@ -37,7 +39,7 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "gloss", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
+    """"add", "light", "gloss", "denoise", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
     return node.get(MARK)
 
 
@@ -99,6 +101,7 @@ def splice(tree, picture, helper):
 
 def unsplice(tree, scene, helper):
     """Take out what splice() put in for `scene`, and give its users the plain image again."""
+    unsplice_denoise(tree, helper)
     unsplice_gloss(tree, helper)
     lights = [node for node in tree.nodes if role(node) == "light" and node.scene in (helper, None)]
     for add in [node for node in tree.nodes if role(node) == "add"]:
@@ -150,6 +153,39 @@ def lacks_gloss(tree, scene):
     return any(light and (role(light) != "gloss" or not source(light, B)) for light in lights)
 
 
+def splice_denoise(tree, scene):
+    """Put a Denoise node behind the light of each node that adds it to the picture of `scene`."""
+    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
+        target = _takes_light(add)
+        given = next((link.from_socket for link in target.links), None)
+        if given is not None and role(given.node) == "light":
+            picture, denoise = source(add, A), _new(tree, "CompositorNodeDenoise", "denoise")
+            denoise.name = denoise.label = "Afterlight: Denoise"
+            for own, output in (("Image", given), ("Albedo", picture.outputs["Diffuse Color"]), ("Normal", picture.outputs["Normal"])):
+                tree.links.new(output, denoise.inputs[own])
+            tree.links.new(denoise.outputs["Image"], target)
+            denoise.parent, denoise.hide = add.parent, True
+            denoise.location = add.location[0] - 40, add.location[1] - 260
+
+
+def unsplice_denoise(tree, helper):
+    """Take out what splice_denoise() put in."""
+    for denoise in [node for node in tree.nodes if role(node) == "denoise"]:
+        light = source(denoise, "Image")
+        if light is None or light.scene in (helper, None):
+            given = next((link.from_socket for link in denoise.inputs["Image"].links), None)
+            users = [link.to_socket for link in denoise.outputs["Image"].links]
+            tree.nodes.remove(denoise)
+            for user in users if given else ():
+                tree.links.new(given, user)
+
+
+def lacks_denoise(tree, scene):
+    """Whether a node that adds light to the picture of `scene` adds some that went through no Denoise node."""
+    return any(link.from_node.get(MARK) == "light" for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)
+               for link in _takes_light(node).links)
+
+
 def shows_picture(add, scene):
     """Whether an adding node adds to the picture of `scene`."""
     picture = source(add, A)
@@ -157,9 +193,9 @@ def shows_picture(add, scene):
 
 
 def light_of(add):
-    """The node whose light an adding node adds, before the glossy light comes to it."""
-    node = source(add, B)
-    return source(node, A) if node and role(node) == "gloss" else node
+    """The node whose light an adding node adds, before it is denoised and the glossy light comes to it."""
+    node = next((link.from_node for link in _takes_light(add).links), None)
+    return source(node, "Image") if node and role(node) == "denoise" else node
 
 
 def light_node(tree, helper, layer):
@@ -256,9 +292,20 @@ def _light_for(tree, picture, helper):
 
 
 def _is_idle(light):
-    """Whether nothing uses the light of one of our Render Layers nodes, or only a gloss node that nothing uses."""
-    return not any(role(link.to_node) != "gloss" or socket(link.to_node.outputs, RESULT).is_linked
-                   for link in light.outputs[PASS].links)
+    """Whether nothing uses the light of one of our Render Layers nodes, or only nodes of ours that nothing uses."""
+    return not any(_is_used(link.to_node) for link in light.outputs[PASS].links)
+
+
+def _is_used(node):
+    """Whether a node that takes light is not one of ours that leads nowhere."""
+    return role(node) not in {"gloss", "denoise"} or any(
+        _is_used(link.to_node) for output in node.outputs for link in output.links)
+
+
+def _takes_light(add):
+    """The input by which the light comes to an adding node, or to the node that adds the glossy light before it."""
+    node = source(add, B)
+    return socket(node.inputs, A) if node and role(node) == "gloss" else socket(add.inputs, B)
 
 
 def _same_layer(picture, light, scene):

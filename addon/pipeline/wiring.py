@@ -35,6 +35,11 @@ def connect(scene):
         else:
             nodes.unsplice_gloss(group, helper)
     follow(scene)
+    for group in nodes.trees(tree):  # now that the passes are on which the Denoise node gets
+        if wants_denoise(scene):
+            nodes.splice_denoise(group, scene)
+        else:
+            nodes.unsplice_denoise(group, helper)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
 
@@ -49,6 +54,12 @@ def wants_gloss(scene):
     """Whether the light off glossy surfaces is to be gathered."""
     settings = scene.afterlight
     return settings.enabled and settings.use_glossy and settings.method == "RADIOSITY"
+
+
+def wants_denoise(scene):
+    """Whether Blender's Denoise node is to have the light."""
+    settings = scene.afterlight
+    return settings.enabled and settings.denoise == "NODE" and settings.method == "RADIOSITY"
 
 
 def follow(scene):
@@ -145,6 +156,8 @@ def faults(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
     if wants_gloss(scene) and any(nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
         found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
+    if wants_denoise(scene) and any(nodes.lacks_denoise(group, scene) for group in nodes.trees(tree)):
+        found[say("The Denoise node of the indirect light was deleted")] = "REPAIR"
     if any(mirror.use and not all(getattr(layer, switch) for switch, _ in _passes_of(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"

@@ -80,6 +80,20 @@ TEXTS = {
         "So viele Male wird für jedes Bild gesammelt und gemittelt. Die Zeit wächst im gleichen Verhältnis, das Rauschen sinkt "
         "mit der Wurzel",
 
+    "Denoise": "Entrauschen",
+    "How noise is taken out of the light. Costs little beside the gather":
+        "Wie das Rauschen aus dem Licht kommt. Kostet wenig neben dem Sammeln",
+    "None": "Nicht",
+    "Leave it as it was drawn": "Es lassen, wie es gezogen wurde",
+    "Smooth": "Glätten",
+    "Average neighbouring texels along surfaces": "Benachbarte Texel auf derselben Fläche mitteln",
+    "Denoise Node": "Entrauschen-Node",
+    "Blender's Denoise node on the light alone, in the compositor. A tenth closer than Smooth where Start Resolution is Full; it "
+    "leaves the noise of coarser ones":
+        "Blenders Entrauschen-Node auf das Licht allein, im Compositor. Ein Zehntel näher als Glätten, wo die Startauflösung Voll "
+        "ist; das Rauschen gröberer lässt er stehen",
+    "The Denoise node of the indirect light was deleted": "Der Entrauschen-Node des indirekten Lichts wurde gelöscht",
+
     "Shadow World": "Welt abschatten",
     "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of one "
     "colour or of an environment picture; needs Visibility, and costs nothing":

@@ -7,6 +7,7 @@ settings.start = "QUARTER"
 settings.draws = 8
 settings.accumulate = 1
 settings.use_history = True
+settings.denoise = "SMOOTH"
 settings.bounces = 3
 settings.use_visibility = True
 settings.use_world_shadow = True

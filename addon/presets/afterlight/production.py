@@ -7,6 +7,7 @@ settings.start = "HALF"
 settings.draws = 16
 settings.accumulate = 1
 settings.use_history = True
+settings.denoise = "SMOOTH"
 settings.bounces = 4
 settings.use_visibility = True
 settings.use_world_shadow = True

@@ -7,6 +7,7 @@ settings.start = "FULL"
 settings.draws = 64
 settings.accumulate = 1
 settings.use_history = True
+settings.denoise = "SMOOTH"
 settings.bounces = 8
 settings.use_visibility = True
 settings.use_world_shadow = True
