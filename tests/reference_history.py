@@ -6,7 +6,8 @@ import numpy as np
 from reference import FLATNESS_SHARPNESS, LEAST_WEIGHT, NORMAL_POWER, direction, dot
 
 MOVES, SAME_HEIGHT, SAME_DEPTH, SAME_COSINE, MOVED_COSINE = 0.5, 1.0, 0.1, 0.9, 0.5
-AROUND, STRIDE, MAYBE, SURELY, COMMON, SAME_SURFACE, FEWEST = 2, 2, 2.0, 3.0, 0.03, 0.5, 8
+AROUND, STRIDE, MAYBE, SURELY, NEVER, COMMON, SAME_SURFACE, FEWEST = 2, 2, 2.0, 3.0, 6.0, 0.03, 0.5, 8
+LITTLE, MUCH = 0.1, 0.5
 
 
 def texel_of(camera, start, place):
@@ -52,32 +53,54 @@ def reproject(level, camera, past, past_camera, past_light, start, motion=None):
     return known
 
 
-def drift(level, known, now):
-    """(H, W, 3): what surely changed of the light around each texel since it was known. now: (H, W, 3)."""
+def changes(level, known, now, same_surface):
+    """(count, change, squares, now, past): sums over the taps around each texel, (H, W) and (H, W, 3) each."""
     height, width = level.area.shape
-    normal, surface = direction(level.vector_area), (level.area > 0) & (known[..., 3] > 0)
+    normal, surface = direction(level.vector_area), known[..., 3] > 0
     change = now - known[..., :3]
-    sums = np.zeros((3, height, width, 3))
-    count = np.zeros((height, width))
+    sums, count = np.zeros((4, height, width, 3)), np.zeros((height, width))
     for dx, dy in ((STRIDE * x, STRIDE * y) for y in range(-AROUND, AROUND + 1) for x in range(-AROUND, AROUND + 1)):
         here = slice(max(0, -dy), max(0, height - max(0, dy))), slice(max(0, -dx), max(0, width - max(0, dx)))
         there = slice(max(0, dy), max(0, height + min(0, dy))), slice(max(0, dx), max(0, width + min(0, dx)))
         rise = dot(normal[here], level.place[there] - level.place[here])
         flatness = 1 / (1 + FLATNESS_SHARPNESS * rise ** 2 / np.where(surface[there], level.area[there], 1))
         likeness = np.maximum(dot(normal[here], normal[there]), 0) ** NORMAL_POWER
-        same = surface[there] & (flatness * likeness + LEAST_WEIGHT > SAME_SURFACE)
-        for total, values in zip(sums, (change, change ** 2, now)):
-            total[here] += np.where(same[..., None], values[there], 0)
-        count[here] += same
+        taken = surface[there] & (flatness * likeness + LEAST_WEIGHT > SAME_SURFACE if same_surface else True)
+        for total, values in zip(sums, (change, change ** 2, now, known[..., :3])):
+            total[here] += np.where(taken[..., None], values[there], 0)
+        count[here] += taken
+    return count, *sums
+
+
+def deviations(count, change, squares, now, _past):
     few = np.maximum(count, FEWEST)[..., None]
-    mean, square, light = sums / few
+    mean, square, light = change / few, squares / few, now / few
     deviation = np.sqrt(np.maximum(square - mean ** 2, 0) / (few - 1) + (COMMON * light) ** 2)
-    sure = np.clip((np.abs(mean) / np.maximum(deviation, 1e-37) - MAYBE) / (SURELY - MAYBE), 0, 1)
-    return np.where((count >= FEWEST)[..., None], mean * sure, 0)
+    return np.where((count >= FEWEST)[..., None], np.abs(mean) / np.maximum(deviation, 1e-37), 0)
+
+
+def drift(level, known, now):
+    """(H, W, 3): what surely changed of the light on the surface around each texel since it was known. now: (H, W, 3)."""
+    here = changes(level, known, now, same_surface=True)
+    return here[1] / np.maximum(here[0], 1)[..., None] * np.clip((deviations(*here) - MAYBE) / (SURELY - MAYBE), 0, 1)
+
+
+def kept(level, known, now):
+    """(H, W): what is known counts by this much, since the light around is another."""
+    around = changes(level, known, now, same_surface=False)
+    _, change, _, light, past = around
+    share = np.abs(change) / np.maximum(np.maximum(np.abs(light), np.abs(past)), 1e-37)
+    sure = np.clip((deviations(*around) - SURELY) / (NEVER - SURELY), 0, 1)
+    return 1 - (sure * np.clip((share - LITTLE) / (MUCH - LITTLE), 0, 1)).max(-1)
 
 
 def accumulate(level, known, now, gathers, earlier, may_drift):
     """(H, W, 4): the mean of both, and of how many gathers it is. now: (H, W, 3)."""
-    weight = np.clip(known[..., 3], 0, earlier)[..., None]
-    past = known[..., :3] + (drift(level, known, now) if may_drift else 0) * (weight > 0)
-    return np.concatenate([(past * weight + now * gathers) / (weight + gathers), weight + gathers], -1)
+    weight = np.clip(known[..., 3], 0, earlier) if may_drift else np.full(known.shape[:2], float(earlier))
+    past = known[..., :3]
+    if may_drift:
+        past = past + drift(level, known, now) * (weight > 0)[..., None]
+        weight = weight * kept(level, known, now)
+    weight = weight[..., None]
+    count = np.where(known[..., 3:] < 0, -1, weight + gathers)
+    return np.concatenate([(past * weight + now * gathers) / (weight + gathers), count], -1)

@@ -29,9 +29,7 @@ def base_of(light, view):
 def remembered(light, view, lit):
     """(light.History, reference.Level) of a frame with that light, (h, w, 4)."""
     base, level = base_of(light, view)
-    past = light.History()
-    past.keep(base, light.device.texture(*lit.shape[1::-1], data=lit), view.camera)
-    return past, level
+    return light.History(base, light.device.texture(*lit.shape[1::-1], data=lit), view.camera), level
 
 
 def noise(seed, shape=(SIZE[1] // START, SIZE[0] // START)):
@@ -42,8 +40,7 @@ def noise(seed, shape=(SIZE[1] // START, SIZE[0] // START)):
 
 def known_by(light, past, view, base):
     table = light.views.view_table([view], SIZE, light.Draws(start=START))
-    known = light.history.reproject(past, base, view.camera, view.passes.motion, table)
-    return None if known is None else light.device.read(known)
+    return light.device.read(light.history.reproject(past, base, view.camera, view.passes.motion, table))
 
 
 # Against float64
@@ -97,6 +94,7 @@ def test_the_mean_agrees_with_float64(light, may_drift):
     found = light.device.read(light.history.accumulate(base, *texture, 2, 3, drift=may_drift))
     expected = history_64.accumulate(level, known, now[..., :3], 2, 3, may_drift)
     assert np.abs(found - expected).max() < 2e-3
+    assert history_64.kept(level, known, now[..., :3]).min() < 0.5
     sure = history_64.drift(level, known, now[..., :3])
     assert np.abs(sure).mean((0, 1))[1] > 0.2 > 10 * np.abs(sure).mean((0, 1))[0]
 
@@ -162,8 +160,8 @@ def test_a_frame_without_a_history_makes_up_for_it(light):
     first = light.History()
     light.gather_views(shot(light, 0), draws(light), history=first)
     assert (gathers(first) == light.history.REBUILT).all()
-    light.gather_views(shot(light, 0), draws(light, 7919), history=first)
-    assert (gathers(first) == light.history.FRAMES).all()
+    light.gather_views(shot(light, 0), draws(light, 7919, groups=12, candidates=8), history=first)
+    assert (gathers(first) == light.history.FRAMES).mean() > 0.99, "noise passes for change hardly ever"
     turned = [light.View(view.passes, view.camera) for view in shot(light, 0)[1:]]   # a cut to what was out of the picture
     light.gather_views(turned[1:2] + turned, draws(light, 2), history=first)
     assert (gathers(first) == light.history.REBUILT).all()
@@ -192,7 +190,21 @@ def test_a_lamp_that_is_switched_arrives(light, factor):
     for frame in range(4):
         light.gather_views(shot(light, 3, switched), draws(light, 50_000 + frame, groups=8), history=past)
         arrived.append((lit(past).mean() - before) / (after - before))
-    assert arrived[-1] > 0.95 and max(arrived) < 1.02, arrived
+        assert (gathers(past) > 4).mean() > 0.98, "where much changes as much is gathered anew: it is as calm as before"
+    assert arrived[0] > 0.95 and max(arrived) < 1.02, arrived
+
+
+def test_small_things_do_not_hold_old_light(light):
+    """Pillars of a few texels, none of which has eight of its own surface around it, in a room whose lamp is switched off."""
+    small = [((x, y, -1.0), (x + 0.03, y + 0.03, 0.5)) for x, y in ((0.1, -0.2), (0.3, 0.1), (-0.1, 0.2))]
+    past = light.History()
+    for frame in range(4):
+        light.gather_views(shot(light, 0, solids=small), draws(light, frame, groups=8), history=past)
+    thin = rooms.trace(camera(light), SIZE, solids=small)[0] < rooms.trace(camera(light), SIZE)[0] - 0.05
+    before = lit(past)[thin].mean()
+    light.gather_views(shot(light, 0, lambda place, normal: 0.01 * rooms.lamp(place, normal), small),
+                       draws(light, 9, groups=8), history=past)
+    assert thin.sum() > 20 and lit(past)[thin].mean() < 0.05 * before
 
 
 def run_once(light, radiance, seed):

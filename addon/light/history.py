@@ -19,7 +19,7 @@ from .pipeline import Pyramid, Texture
 
 FRAMES = 5
 REBUILT = 2 * FRAMES - 1   # gathers of a frame without a history
-LEAST_KNOWN = 0.5          # share of the picture's surfaces that the frame before must have shown
+LEAST_KNOWN = 0.5          # share of the picture's surfaces whose light must be known from the frames before
 STRIDE = 101               # between the seeds of two gathers of a frame: each uses a few of its own for bounces
 
 
@@ -32,9 +32,19 @@ class History:
     light: Texture | None = None
     camera: Camera | None = None
 
-    def keep(self, base: Pyramid, light: Texture, camera: Camera) -> None:
-        """The frame is done, and the next comes."""
-        self.base, self.light, self.camera = base, light, camera
+    def go_on(self, base, camera, motion, views, light, gathers, more) -> Texture:
+        """The mean of `light`, that of so many gathers of a frame, and of what is known; which is kept for the next frame.
+
+        base, camera: of the frame. motion: light.Passes.motion. views: the Views block. more(light, first, last): the mean of
+        `light`, which is that of gathers up to `first`, and of those up to `last`."""
+        known, earlier = reproject(self, base, camera, motion, views), (FRAMES - 1) * gathers
+        mean = accumulate(base, known, light, gathers, earlier, drift=True)
+        if gathers < REBUILT and is_new(mean, gathers):
+            del mean
+            light = more(light, gathers, REBUILT)
+            mean = accumulate(base, known, light, REBUILT, earlier, drift=True)
+        self.base, self.light, self.camera = base, mean, camera
+        return mean
 
     def fits(self, base: Pyramid, camera: Camera) -> bool:
         """Whether its frame can be looked up from one with this base."""
@@ -43,11 +53,11 @@ class History:
 
 def reproject(history: History, base: Pyramid, camera: Camera, motion, views: np.ndarray) -> Texture | None:
     """What the history knows of the base's texels, as History.light has it, with a = 0 where it knows nothing and -1 where there is
-    no surface. motion: light.Passes.motion. views: the Views block. None where it knows of less than LEAST_KNOWN of them."""
+    no surface. motion: light.Passes.motion. views: the Views block. None where it can't be looked up."""
     if not history.fits(base, camera):
         return None
-    start, past = int(base.parameters["frame"][2]), history.camera
-    views["past"] = past_rows(past, camera.position, start)
+    start = int(base.parameters["frame"][2])
+    views["past"] = past_rows(history.camera, camera.position, start)
     block = base.parameters.copy()
     block["span"][0] = motion is not None
     *_, across, up = base.boxes[0]
@@ -55,8 +65,7 @@ def reproject(history: History, base: Pyramid, camera: Camera, motion, views: np
     device.dispatch("reproject", block, {
         "surfels": base.surfels, "past_surfels": history.base.surfels, "past_light": history.light,
         "motion": _motion_texture(motion, start, across, up), "known_out": known}, device.groups(across, up), views)
-    gathers = device.read(known)[..., 3]
-    return known if np.count_nonzero(gathers > 0) > LEAST_KNOWN * np.count_nonzero(gathers >= 0) else None
+    return known
 
 
 def accumulate(base: Pyramid, known: Texture | None, irradiance: Texture, gathers: int, earlier: int, *, drift: bool) -> Texture:
@@ -72,6 +81,12 @@ def accumulate(base: Pyramid, known: Texture | None, irradiance: Texture, gather
     device.dispatch("accumulate", block, {"surfels": base.surfels, "irradiance": irradiance, "known": known, "light_out": light},
                     device.groups(across, up))
     return light
+
+
+def is_new(light: Texture, gathers: int) -> bool:
+    """Whether of a frame's surfaces less than LEAST_KNOWN have more to their light than so many gathers of this frame."""
+    counts = device.read(light)[..., 3]
+    return np.count_nonzero(counts > gathers) <= LEAST_KNOWN * np.count_nonzero(counts >= 0)
 
 
 def past_rows(past: Camera, origin, start: int) -> np.ndarray:

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import device, glossy
-from .history import FRAMES, REBUILT, STRIDE, History, accumulate, reproject
+from .history import STRIDE, History, accumulate
 from .inputs import Draws, Gloss, View
 from .pipeline import Cancelled, composite, pack, stopwatch, upload
 
@@ -61,25 +61,28 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
     for name in device.LIGHT_CHANNELS:
         del channels[name]
 
-    known = reproject(history, base, main, views[0].passes.motion, table) if history else None
-    count = settings.gathers if history is None or known else max(settings.gathers, REBUILT)
-    light, shown = None, 0.0
-    for number in range(count):
-        each = replace(settings, seed=settings.seed + STRIDE * number)
-        gathered, sent, irradiance = gather(each, table, base, depths, emitters, receivers, lap,
-                                            lambda stage, fraction: report(stage, (number + fraction) / count))
-        light = accumulate(base, light, gathered, 1, count, drift=False) if count > 1 else gathered
-        if gloss is not None and number < settings.gathers:
-            textures = {"emitters": emitters, "radiance": shining(views, table, depths, irradiance, sent), "depths": depths}
-            shown = shown + glossy.gather(gloss, channels, base, table, each, report, textures)
-            lap("glossy")
-            del textures
-        del gathered, sent, irradiance
-    if gloss is not None:
-        gloss.picture = shown / settings.gathers
+    shown = []
+
+    def gathers(light, first, last):
+        """The mean of `light`, that of the first gathers, and of more."""
+        for number in range(first, last):
+            each = replace(settings, seed=settings.seed + STRIDE * number)
+            gathered, sent, irradiance = gather(each, table, base, depths, emitters, receivers, lap,
+                                                lambda stage, fraction: report(stage, (number + fraction) / last))
+            light = accumulate(base, light, gathered, 1, number, drift=False) if number else gathered
+            if gloss is not None and number < settings.gathers:
+                textures = {"emitters": emitters, "radiance": shining(views, table, depths, irradiance, sent), "depths": depths}
+                shown.append(glossy.gather(gloss, channels, base, table, each, report, textures))
+                lap("glossy")
+                del textures
+            del gathered, sent, irradiance
+        return light
+
+    light = gathers(None, 0, settings.gathers)
     if history:
-        light = accumulate(base, known, light, count, (FRAMES - 1) * count, drift=True)
-        history.keep(base, light, main)
+        light = history.go_on(base, main, views[0].passes.motion, table, light, settings.gathers, gathers)
+    if gloss is not None:
+        gloss.picture = sum(shown) / len(shown)
 
     report("upsample", 1.0)
     indirect = composite(channels, base, smooth(base, light, table, SMOOTH_STEPS if settings.smooth else UNSMOOTHED))
@@ -262,18 +265,20 @@ def gpu_bytes(width: int, height: int, settings: Draws, further: int, shines: bo
     start = start_of(settings, (width, height))
     base = -(-width // start) * -(-height // start)
     channel = -(-width // 4) * height * 16
-    past = 2 * 16 * base if averages else 0   # surfels and light of the frame before
+    past = 2 * 16 * base if averages else 0    # surfels and light of the frame before
+    rebuilt = 3 * 16 * base if averages else 0  # what is known of it, the first gathers, and the mean of all
     known = 16 * base if averages else 0
     mean = 16 * base if settings.gathers > 1 else 0
     records = depths + 64 * (emitters + receivers)
     packed = records + 16 * base + 7 * channel
-    gathering = packed + past + known + mean + 16 * (receivers + emitters)
+    gathering = packed + past + mean + 16 * (receivers + emitters)
+    most = packed + past + max(mean, rebuilt) + 16 * (receivers + emitters)
     steps = [packed + 6 * channel + past,
-             gathering + max(4 * ENTRIES + 16 * max(emitters, base), 8 * ENTRIES),  # bounces, then the base
-             packed + known + 16 * 3 * base,                                        # smoothed twice
-             packed + known + 16 * 2 * base + 3 * channel]                          # composited
-    if mean:
-        steps.append(gathering + 16 * 2 * base)
+             most + max(4 * ENTRIES + 16 * max(emitters, base), 8 * ENTRIES),  # bounces, then the base
+             packed + known + 16 * 3 * base,                                   # smoothed twice
+             packed + known + 16 * 2 * base + 3 * channel]                     # composited
+    if mean or rebuilt:
+        steps.append(most + 16 * 2 * base)
     if shines:
         gathered = gathering + 16 * base
         steps += [gathered + 64 * emitters + max(13 * channel, 16 * emitters), gathered + 16 * emitters + glossy.gpu_bytes(base, channel)]
