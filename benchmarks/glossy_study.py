@@ -79,13 +79,11 @@ def of_world(scene):
             lamp.hide_render = False
 
 
-def lit(scene, afterlight, rays=None):
+def lit(scene, afterlight):
     """((H, W, 3) of the pass Indirect Glossy, seconds of the glossy gather) of a frame with the preset."""
     bench.use_preset(PRESET, afterlight)
     settings = scene.afterlight
     settings.use_glossy = True
-    if rays:
-        settings.draws = rays
     settings.enabled = True
     return again(scene, afterlight)
 
@@ -143,12 +141,14 @@ def study(path, wanted, afterlight):
         add("Afterlight", picture + world, seconds)
     else:
         lit(scene, afterlight)
+        draws = scene.afterlight.draws
         for values in wanted.constants:
-            with radiosity_study.changed(afterlight.addon.light, **{name: value for name, value in values.items() if name != "RAYS"}):
-                if "RAYS" in values:
-                    scene.afterlight.draws = int(values["RAYS"])
+            constants = {name: value for name, value in values.items() if name != "RAYS"}
+            with radiosity_study.changed(afterlight.addon.light, **constants):
+                scene.afterlight.draws = int(values.get("RAYS", draws))
                 picture, seconds = again(scene, afterlight, bpy.ops.afterlight.update)
-                add(", ".join(f"{name} {value}" for name, value in values.items()) or "as it is", picture + world, seconds)
+                name = ", ".join(f"`{name}` {value}" for name, value in values.items())
+                add(name or "as it is", picture + world, seconds)
     scene.afterlight.enabled = False
     if wanted.pictures:
         save(wanted.pictures / f"glossy_{path.stem}.png", pictures, truth.mean[mask].mean())
@@ -176,7 +176,8 @@ def save(path, pictures, mean):
 
 def combinations(texts):
     """[{name: value}] of all that texts NAME=VALUE,VALUE ask for, one name at a time."""
-    return [{}] * bool(texts) + [{name: value} for text in texts for name, values in [text.split("=")] for value in values.split(",")]
+    return [{}] * bool(texts) + [{name: value} for text in texts for name, values in [text.split("=")]
+                                 for value in values.split(",")]
 
 
 def main():
