@@ -5,7 +5,7 @@ the lobe's integrals that they draw from."""
 import numpy as np
 
 from reference import COSINE_FLOOR, FARTHEST, direction, dot
-from reference_views import (NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye, to_view,
+from reference_views import (DEPTH_TOLERANCE, NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye, to_view,
                              world_radiance)
 
 MARCH_STEPS = 32
@@ -166,8 +166,9 @@ def radiance_at(eyes, grids, emitters, sent, place, towards):
         number, projected = emitter_at(eye, grid, place), project(eye, place)
         inside = number >= 0
         normal = direction(emitters[number, 1, :3])
-        seen = inside & (emitters[number, 0, 3] > 0) & (depth_at(eye, projected) > 0)
-        seen &= shows(eye, place, normal, -towards, projected)
+        seen = inside & (emitters[number, 0, 3] > 0)
+        seen &= np.abs(dot(normal, place - emitters[number, 0, :3])) < DEPTH_TOLERANCE * projected[:, 2]
+        seen &= dot(normal, towards) * dot(normal, to_eye(eye, place)) < 0
         weight = np.where(seen, 1 / np.where(seen, shown_area(eye, place, normal, projected[:, 2]), 1), 0)
         total += weight[:, None] * sent[number, :3]
         weights += weight

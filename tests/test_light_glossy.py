@@ -125,7 +125,7 @@ def test_reflections_agree_with_float64(light, roughness, world):
     expected = glossy_64.reflect(staged.eyes, grids, emitters, sent, places, normals, areas, np.full(len(places), roughness),
                                  shifts_of(across, up), 3, staged.table["odds"][3], world * WORLD)
     expected[areas == 0] = 0
-    assert (expected[:, 3] > 0).mean() > 0.7
+    assert (expected[:, 3] > 0).mean() > 0.6
     mostly(measured, expected, 2e-3, 0.03)
 
 
@@ -202,6 +202,23 @@ def normal_at(place, towards):
                 normal[nearer] = np.eye(3)[axis]
                 best = np.where(nearer, off, best)
     return normal * -np.sign((normal * towards).sum(-1, keepdims=True))
+
+
+def test_a_thin_wall_does_not_hide_what_its_other_side_reflects(light):
+    """A hall of 4 m halved by a wall of 15 mm, its left half bright and its right half dark; one view sees the wall's left side, others
+    look along its right side, where a texel of a depth map is thicker than the wall."""
+    def bright(place, normal):
+        return np.broadcast_to(place[..., :1] < 0, place.shape).astype(float)
+
+    size, hall, wall = (96, 96), ((-2, -2, -2), (2, 2, 2)), [((-0.0075, -2, -2), (0.0075, 2, 2))]
+    eyes = [((-1.9, 0.1, -0.2), (1, 0, 0)), ((-0.2, 0, 0.1), (-1, 0.1, 0)), ((-1.9, 1.9, 0), (1, -1, 0)), ((-1.9, -1.9, 0), (1, 1, 0)),
+            ((0.4, -1.9, -0.2), (-0.1, 1, 0)), ((0.4, 1.9, 0.3), (-0.1, -1, 0)), ((0.3, 0.1, 1.9), (-0.1, 0, -1))]
+    views = [rooms.view_of(light, rooms.camera_at(light, eye, towards, size, fov=2.2 if index else np.pi / 2), size,
+                           radiance=bright, albedo=0.0, room=hall, solids=wall) for index, (eye, towards) in enumerate(eyes)]
+    picture = gathered(light, views, gloss_of(light, views[0].passes, 1.0, 0.3), start=1)
+    _, place, _ = rooms.trace(views[0].camera, size, hall, wall)
+    seen = picture[np.abs(place[..., 0] + 0.0075) < 1e-3]
+    assert len(seen) > 3000 and seen.mean() > 0.99 and np.mean(seen < 0.5) < 0.002
 
 
 def floor_view(light, size=(64, 48)):
