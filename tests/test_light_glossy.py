@@ -47,7 +47,7 @@ def gloss_of(light, passes, color=0.5, roughness=0.3):
 
 def gathered(light, views, gloss, world=None, **changes):
     """The picture of the glossy light, top row last."""
-    light.gather_views(views, draws(light, **changes), world, gloss=gloss)
+    light.gather_views(views, draws(light, **dict(groups=32) | changes), world, gloss=gloss)
     return gloss.picture
 
 
