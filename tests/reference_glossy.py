@@ -5,8 +5,8 @@ the lobe's integrals that they draw from."""
 import numpy as np
 
 from reference import COSINE_FLOOR, FARTHEST, FLATNESS_SHARPNESS, NORMAL_POWER, direction, dot
-from reference_views import (DEPTH_TOLERANCE, NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye, to_view,
-                             world_radiance)
+from reference_views import (DEPTH_TOLERANCE, NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye,
+                             to_view, world_radiance)
 
 MARCH_STEPS = 32
 MARCH_TEXELS = 6.0
