@@ -3,11 +3,13 @@
 
     .venv/bin/python -m benchmarks.glossy_study [FILE.blend ...] [--samples 256] [--size 320x180] [--pictures FOLDER]
     .venv/bin/python -m benchmarks.glossy_study --constants MARCH_STEPS=8,16,32 LOBE_SHARE=0,0.5,1
+    .venv/bin/python -m benchmarks.glossy_study --cost --size 640x360
 
 Prints tables: relative L1 error and energy of the indirect glossy light, over the pixels with a Glossy Color; the first row is the
 noise of the reference itself. The reference is Cycles with four diffuse bounces and the file's glossy ones, in two halves of
 `samples` each: Glossy Indirect, with the light that meshes and the world send directly, which EEVEE has no lamps for. With
---constants Afterlight alone, with other values of the shaders' constants or RAYS (Draws)."""
+--constants Afterlight alone, with other values of the shaders' constants or RAYS. With --cost the seconds of the whole
+gather without and with the glossy light, the lesser of two each."""
 
 import argparse
 import sys
@@ -79,13 +81,11 @@ def of_world(scene):
             lamp.hide_render = False
 
 
-def lit(scene, afterlight, rays=None):
+def lit(scene, afterlight):
     """((H, W, 3) of the pass Indirect Glossy, seconds of the glossy gather) of a frame with the preset."""
     bench.use_preset(PRESET, afterlight)
     settings = scene.afterlight
     settings.use_glossy = True
-    if rays:
-        settings.draws = rays
     settings.enabled = True
     return again(scene, afterlight)
 
@@ -143,16 +143,33 @@ def study(path, wanted, afterlight):
         add("Afterlight", picture + world, seconds)
     else:
         lit(scene, afterlight)
+        draws = scene.afterlight.draws
         for values in wanted.constants:
-            with radiosity_study.changed(afterlight.addon.light, **{name: value for name, value in values.items() if name != "RAYS"}):
-                if "RAYS" in values:
-                    scene.afterlight.draws = int(values["RAYS"])
+            constants = {name: value for name, value in values.items() if name != "RAYS"}
+            with radiosity_study.changed(afterlight.addon.light, **constants):
+                scene.afterlight.draws = 2 * int(values["RAYS"]) if "RAYS" in values else draws
                 picture, seconds = again(scene, afterlight, bpy.ops.afterlight.update)
-                add(", ".join(f"{name} {value}" for name, value in values.items()) or "as it is", picture + world, seconds)
+                name = ", ".join(f"`{name}` {value}" for name, value in values.items())
+                add(name or "as it is", picture + world, seconds)
     scene.afterlight.enabled = False
     if wanted.pictures:
         save(wanted.pictures / f"glossy_{path.stem}.png", pictures, truth.mean[mask].mean())
     return rows
+
+
+def cost(path, wanted, afterlight):
+    """{row: seconds} of one scene."""
+    import bpy
+    scene, found = candidates.open_scene(path, wanted.size, 1, afterlight), {}
+    lit(scene, afterlight)
+    for glossy in (False, True) * 2:
+        scene.afterlight.use_glossy = glossy
+        bpy.ops.afterlight.update()
+        seconds = afterlight.addon.pipeline.status.stages(scene)["gather on the GPU"]
+        name = "with Glossy Light" if glossy else "without"
+        found[name] = min(seconds, found.get(name, seconds))
+    scene.afterlight.enabled = False
+    return {name: f"{seconds:.1f} s" for name, seconds in found.items()}
 
 
 def save(path, pictures, mean):
@@ -176,7 +193,8 @@ def save(path, pictures, mean):
 
 def combinations(texts):
     """[{name: value}] of all that texts NAME=VALUE,VALUE ask for, one name at a time."""
-    return [{}] * bool(texts) + [{name: value} for text in texts for name, values in [text.split("=")] for value in values.split(",")]
+    return [{}] * bool(texts) + [{name: value} for text in texts for name, values in [text.split("=")]
+                                 for value in values.split(",")]
 
 
 def main():
@@ -185,12 +203,14 @@ def main():
     parser.add_argument("--samples", type=int, default=256)
     parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), default=(320, 180))
     parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--cost", action="store_true")
     parser.add_argument("--constants", nargs="+", default=[])
     wanted = parser.parse_args()
     wanted.constants = combinations(wanted.constants)
     afterlight = session.enable_afterlight()
-    found = {path.stem: study(path.resolve(), wanted, afterlight) for path in wanted.files}
-    print(f"| error, energy | {' | '.join(found)} |\n|---|{'---|' * len(found)}")
+    measure = cost if wanted.cost else study
+    found = {path.stem: measure(path.resolve(), wanted, afterlight) for path in wanted.files}
+    print(f"| {'gather' if wanted.cost else 'error, energy'} | {' | '.join(found)} |\n|---|{'---|' * len(found)}")
     for row in next(iter(found.values())):
         print(f"| {row} | {' | '.join(rows[row] for rows in found.values())} |")
 

@@ -126,10 +126,11 @@ vec4 radiance_at(vec3 place, vec3 towards)
     }
     vec4 first = texelFetch(emitters, record_texel(number, 0, 4), 0);
     vec3 normal = direction(normal_of(number));
-    vec3 projected = project(view, place);
-    float found = depth_at(view, projected);
-    if (first.a > 0.0 && found > 0.0 && shows(view, place, normal, -towards, projected, found)) {
-      float weight = 1.0 / shown_area(view, place, normal, projected.z);
+    float depth = project(view, place).z;
+    // In the plane of what is shown there, and on the side that the view shows: a depth alone tells little along a slope.
+    bool is_same = abs(dot(normal, place - first.xyz)) < DEPTH_TOLERANCE * depth;
+    if (first.a > 0.0 && is_same && dot(normal, towards) * dot(normal, to_eye(view, place)) < 0.0) {
+      float weight = 1.0 / shown_area(view, place, normal, depth);
       sum += weight * texelFetch(radiance, record_texel(number, 0, 1), 0).rgb;
       weights += weight;
     }

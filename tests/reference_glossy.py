@@ -4,9 +4,9 @@ the lobe's integrals that they draw from."""
 
 import numpy as np
 
-from reference import COSINE_FLOOR, FARTHEST, direction, dot
-from reference_views import (NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye, to_view,
-                             world_radiance)
+from reference import COSINE_FLOOR, FARTHEST, FLATNESS_SHARPNESS, NORMAL_POWER, direction, dot
+from reference_views import (DEPTH_TOLERANCE, NEAREST, depth_at, gap_at, passes_through, project, shown_area, shows, to_eye,
+                             to_view, world_radiance)
 
 MARCH_STEPS = 32
 MARCH_TEXELS = 6.0
@@ -15,6 +15,9 @@ LOST = -1.0
 LEAST_ALPHA = 1e-3
 LEAST_COSINE = 0.02
 CLEARANCE = 0.1
+GLOSS_RADIUS = 3
+LOBE_SHARE = 0.5
+ALIKE = 0.1
 R3 = np.array([0.8191725134, 0.6710436067, 0.5497004779])
 
 
@@ -159,15 +162,16 @@ def _is_free(eye, places):
 
 
 def radiance_at(eyes, grids, emitters, sent, place, towards):
-    """((n, 3), (n,) bool): radiance that leaves places against `towards`, and whether any view shows it. grids: (first, across, up, side) of each view's emitters, emitters
-    (count, 4, 4) and sent (count, 4) as the shaders have them; a block is one texel of a depth map or a part of it."""
+    """((n, 3), (n,) bool): radiance that leaves places against `towards`, and whether any view shows it. grids: as emitter_at()
+    has them, of each view, emitters (count, 4, 4) and sent (count, 4) as the shaders have them; a block is one texel of a depth map or a part of it."""
     total, weights = np.zeros((len(place), 3)), np.zeros(len(place))
     for eye, grid in zip(eyes, grids):
         number, projected = emitter_at(eye, grid, place), project(eye, place)
         inside = number >= 0
         normal = direction(emitters[number, 1, :3])
-        seen = inside & (emitters[number, 0, 3] > 0) & (depth_at(eye, projected) > 0)
-        seen &= shows(eye, place, normal, -towards, projected)
+        seen = inside & (emitters[number, 0, 3] > 0)
+        seen &= np.abs(dot(normal, place - emitters[number, 0, :3])) < DEPTH_TOLERANCE * projected[:, 2]
+        seen &= dot(normal, towards) * dot(normal, to_eye(eye, place)) < 0
         weight = np.where(seen, 1 / np.where(seen, shown_area(eye, place, normal, projected[:, 2]), 1), 0)
         total += weight[:, None] * sent[number, :3]
         weights += weight
@@ -206,3 +210,28 @@ def reflect(eyes, grids, emitters, sent, places, normals, areas, roughness, shif
             found = found - world_radiance(world, towards[hit])
         total[hit] += weight[hit, None] * np.concatenate([found, 1 / far[hit, None]], -1)
     return total * (np.pi, np.pi, np.pi, 1) / np.where(weights > 0, weights, 1)[:, None]
+
+
+def smooth_gloss(level, found, gloss):
+    """(H, W, 3): a mean over the texels around on the same surface that are as rough. level: reference.Level of the base; found:
+    (H, W, 4) as reflect() gives it; gloss: (H, W, 2), roughness and how much there is."""
+    height, width = level.area.shape
+    normal, rough, amount = direction(level.vector_area), gloss[..., 0], gloss[..., 1]
+    shines = (level.area > 0) & (amount > 0)
+    deviation = LOBE_SHARE * rough ** 2 / np.maximum(found[..., 3] * np.sqrt(level.area), 1e-6)
+    deviation = np.minimum(deviation, GLOSS_RADIUS * 0.7)
+    within = np.where(shines, np.minimum(np.ceil(2 * deviation), GLOSS_RADIUS), 0)
+    sum_, weights = found[..., :3].copy(), np.ones(level.area.shape)
+    reach = range(-GLOSS_RADIUS, GLOSS_RADIUS + 1)
+    for dx, dy in ((dx, dy) for dy in reach for dx in reach if dx or dy):
+        here = slice(max(0, -dy), max(0, height - max(0, dy))), slice(max(0, -dx), max(0, width - max(0, dx)))
+        there = slice(max(0, dy), max(0, height + min(0, dy))), slice(max(0, dx), max(0, width + min(0, dx)))
+        away = dot(normal[here], level.place[there] - level.place[here])
+        flatness = 1 / (1 + FLATNESS_SHARPNESS * away ** 2 / np.where(shines[there], level.area[there], 1))
+        likeness = np.maximum(dot(normal[here], normal[there]), 0) ** NORMAL_POWER
+        near = np.exp(-0.5 * (dx * dx + dy * dy) / np.maximum(deviation[here], 1e-9) ** 2
+                      - np.abs(rough[there] - rough[here]) / ALIKE)
+        weight = np.where(shines[there] & (within[here] >= max(abs(dx), abs(dy))), near * flatness * likeness, 0)
+        sum_[here] += weight[..., None] * found[there][..., :3]
+        weights[here] += weight
+    return sum_ / weights[..., None]

@@ -197,6 +197,16 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
     assert kind == "none" or not [node for node in tree.nodes if "afterlight" in node]
 
 
+def test_views_show_gloss_where_it_is_wanted(scene, addon):
+    scene.afterlight.views, scene.afterlight.view_count, scene.afterlight.enabled = "AUTOMATIC", 2, True
+    for wanted in (False, True, False):
+        scene.afterlight.use_glossy = wanted
+        layers = [view.view_layers[0] for view in addon.pipeline.views.scenes(scene)]
+        assert len(layers) == 2
+        assert all(layer.use_pass_glossy_color == layer.use_pass_glossy_direct == wanted for layer in layers)
+        assert not any(layer.use_pass_cryptomatte_material for layer in layers)
+
+
 def test_a_pass_in_use_stays_on(scene):
     tree = simple_tree(scene)
     scene.afterlight.use_glossy = scene.afterlight.enabled = True
