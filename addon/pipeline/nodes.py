@@ -5,13 +5,7 @@
                                                      add: A + B -> whatever used the image
     light: Render Layers (helper, layer).Indirect -- B
 
-Where the glossy light is wanted as well, it is added to the light before that:
-
-    light.Indirect ----------- A
-                               gloss: A + B -> B of add
-    light.Indirect Glossy ---- B
-
-Where Blender's Denoise node is wanted, it comes first: light.Indirect -> denoise -> what used it.
+What may come between the light and B is in between.py.
 
 Nodes of ours carry the custom property MARK with their role. All that is known is read off the nodes themselves, so
 what a user moves, renames or deletes is never restored from a record that has gone stale.
@@ -87,7 +81,7 @@ def splice(tree, picture, helper):
     if not links:
         return
     users = [(link.to_socket, link.is_muted) for link in links]
-    add = _sum(tree, "add", "Afterlight")
+    add = summing(tree, "add", "Afterlight")
     light = _light_for(tree, picture, helper)
     for user, is_muted in users:
         tree.links.new(socket(add.outputs, RESULT), user).is_muted = is_muted
@@ -101,8 +95,6 @@ def splice(tree, picture, helper):
 
 def unsplice(tree, scene, helper):
     """Take out what splice() put in for `scene`, and give its users the plain image again."""
-    unsplice_denoise(tree, helper)
-    unsplice_gloss(tree, helper)
     lights = [node for node in tree.nodes if role(node) == "light" and node.scene in (helper, None)]
     for add in [node for node in tree.nodes if role(node) == "add"]:
         light, picture = source(add, B), source(add, A)
@@ -116,76 +108,6 @@ def unsplice(tree, scene, helper):
         tree.nodes.remove(light)
 
 
-def splice_gloss(tree, scene, helper):
-    """Put the glossy light of `helper` between its light and the nodes that add it to the picture."""
-    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
-        given = next((link.from_socket for link in socket(add.inputs, B).links), None)
-        picture = source(add, A)
-        light = next((node for node in tree.nodes if shows(node, helper) and node.layer == picture.layer), None)
-        if given is None or light is None:
-            continue
-        gloss = given.node
-        if role(gloss) != "gloss":
-            gloss = _sum(tree, "gloss", "Afterlight: Glossy")
-            tree.links.new(given, socket(gloss.inputs, A))
-            tree.links.new(socket(gloss.outputs, RESULT), socket(add.inputs, B))
-            gloss.parent, gloss.hide = add.parent, True
-            gloss.location = add.location[0] - 40, add.location[1] - 200
-        if not source(gloss, B):
-            tree.links.new(light.outputs[GLOSSY_PASS], socket(gloss.inputs, B))
-
-
-def unsplice_gloss(tree, helper):
-    """Take out what splice_gloss() put in."""
-    for gloss in [node for node in tree.nodes if role(node) == "gloss"]:
-        light = source(gloss, B)
-        if light is None or light.scene in (helper, None):
-            given = next((link.from_socket for link in socket(gloss.inputs, A).links), None)
-            users = [link.to_socket for link in socket(gloss.outputs, RESULT).links]
-            tree.nodes.remove(gloss)
-            for user in users if given else ():
-                tree.links.new(given, user)
-
-
-def lacks_gloss(tree, scene):
-    """Whether a node that adds light to the picture of `scene` adds no glossy light."""
-    lights = [source(node, B) for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]
-    return any(light and (role(light) != "gloss" or not source(light, B)) for light in lights)
-
-
-def splice_denoise(tree, scene):
-    """Put a Denoise node behind the light of each node that adds it to the picture of `scene`."""
-    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
-        target = _takes_light(add)
-        given = next((link.from_socket for link in target.links), None)
-        if given is not None and role(given.node) == "light":
-            picture, denoise = source(add, A), _new(tree, "CompositorNodeDenoise", "denoise")
-            denoise.name = denoise.label = "Afterlight: Denoise"
-            for own, output in (("Image", given), ("Albedo", picture.outputs["Diffuse Color"]), ("Normal", picture.outputs["Normal"])):
-                tree.links.new(output, denoise.inputs[own])
-            tree.links.new(denoise.outputs["Image"], target)
-            denoise.parent, denoise.hide = add.parent, True
-            denoise.location = add.location[0] - 40, add.location[1] - 260
-
-
-def unsplice_denoise(tree, helper):
-    """Take out what splice_denoise() put in."""
-    for denoise in [node for node in tree.nodes if role(node) == "denoise"]:
-        light = source(denoise, "Image")
-        if light is None or light.scene in (helper, None):
-            given = next((link.from_socket for link in denoise.inputs["Image"].links), None)
-            users = [link.to_socket for link in denoise.outputs["Image"].links]
-            tree.nodes.remove(denoise)
-            for user in users if given else ():
-                tree.links.new(given, user)
-
-
-def lacks_denoise(tree, scene):
-    """Whether a node that adds light to the picture of `scene` adds some that went through no Denoise node."""
-    return any(link.from_node.get(MARK) == "light" for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)
-               for link in _takes_light(node).links)
-
-
 def shows_picture(add, scene):
     """Whether an adding node adds to the picture of `scene`."""
     picture = source(add, A)
@@ -194,13 +116,13 @@ def shows_picture(add, scene):
 
 def light_of(add):
     """The node whose light an adding node adds, before it is denoised and the glossy light comes to it."""
-    node = next((link.from_node for link in _takes_light(add).links), None)
+    node = next((link.from_node for link in takes_light(add).links), None)
     return source(node, "Image") if node and role(node) == "denoise" else node
 
 
 def light_node(tree, helper, layer):
     """A Render Layers node that shows the indirect light of one view layer."""
-    light = _new(tree, "CompositorNodeRLayers", "light")
+    light = new_node(tree, "CompositorNodeRLayers", "light")
     light.label = "Afterlight: Indirect Light"
     light.scene, light.layer = helper, layer
     return light
@@ -208,7 +130,7 @@ def light_node(tree, helper, layer):
 
 def view_node(tree, view):
     """A Render Layers node for which Blender renders a view. Nothing is linked to it."""
-    node = _new(tree, "CompositorNodeRLayers", "view")
+    node = new_node(tree, "CompositorNodeRLayers", "view")
     node.label = "Afterlight: View"
     node.scene = view
     node.hide = True
@@ -226,7 +148,7 @@ def move_behind(tree, late, early):
 
 
 def _remake(tree, old):
-    new = _new(tree, old.bl_idname, role(old) or "")
+    new = new_node(tree, old.bl_idname, role(old) or "")
     if role(old) is None:
         del new[MARK]
     new.scene, new.layer = old.scene, old.layer
@@ -302,7 +224,7 @@ def _is_used(node):
         _is_used(link.to_node) for output in node.outputs for link in output.links)
 
 
-def _takes_light(add):
+def takes_light(add):
     """The input by which the light comes to an adding node, or to the node that adds the glossy light before it."""
     node = source(add, B)
     return socket(node.inputs, A) if node and role(node) == "gloss" else socket(add.inputs, B)
@@ -313,9 +235,9 @@ def _same_layer(picture, light, scene):
             and picture.scene == scene)
 
 
-def _sum(tree, kind, name):
-    """A node that adds B to A."""
-    node = _new(tree, "ShaderNodeMix", kind)
+def summing(tree, kind, name):
+    """A node of ours that adds B to A."""
+    node = new_node(tree, "ShaderNodeMix", kind)
     node.name = node.label = name
     node.data_type, node.blend_type, node.clamp_result = "RGBA", "ADD", False
     socket(node.inputs, "Factor_Float").default_value = 1.0
@@ -323,7 +245,7 @@ def _sum(tree, kind, name):
     return node
 
 
-def _new(tree, idname, kind):
+def new_node(tree, idname, kind):
     active, selected = tree.nodes.active, [node for node in tree.nodes if node.select]
     node = tree.nodes.new(idname)
     node[MARK] = kind

@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import nodes, roughness, views, world
+from . import between, nodes, roughness, views, world
 from .nodes import MARK
 from .passes import MOTION, PASSES, needed
 
@@ -31,15 +31,15 @@ def connect(scene):
     _offer_passes(helper)
     for group in nodes.trees(tree):
         if wants_gloss(scene):
-            nodes.splice_gloss(group, scene, helper)
+            between.splice_gloss(group, scene, helper)
         else:
-            nodes.unsplice_gloss(group, helper)
+            between.unsplice_gloss(group, helper)
     follow(scene)
     for group in nodes.trees(tree):  # now that the passes are on which the Denoise node gets
         if wants_denoise(scene):
-            nodes.splice_denoise(group, scene)
+            between.splice_denoise(group, scene)
         else:
-            nodes.unsplice_denoise(group, helper)
+            between.unsplice_denoise(group, helper)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
 
@@ -92,6 +92,8 @@ def disconnect(scene):
     is_ours = helper is not None and source(helper) == scene
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for group in nodes.trees(tree):
+            between.unsplice_denoise(group, helper)
+            between.unsplice_gloss(group, helper)
             nodes.unsplice(group, scene, helper)
     _restore_tree(scene)
     for layer in scene.view_layers:
@@ -154,9 +156,9 @@ def faults(scene):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if views.faults(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
-    if wants_gloss(scene) and any(nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
+    if wants_gloss(scene) and any(between.lacks_gloss(group, scene) for group in nodes.trees(tree)):
         found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
-    if wants_denoise(scene) and any(nodes.lacks_denoise(group, scene) for group in nodes.trees(tree)):
+    if wants_denoise(scene) and any(between.lacks_denoise(group, scene) for group in nodes.trees(tree)):
         found[say("The Denoise node of the indirect light was deleted")] = "REPAIR"
     if any(mirror.use and not all(getattr(layer, switch) for switch, _ in _passes_of(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
