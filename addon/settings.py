@@ -93,8 +93,8 @@ PARAMETERS = (
         {"default": True}),
     Parameter(
         "use_glossy", BoolProperty, "Glossy Light",
-        "Let glossy surfaces reflect the bounced light, and the surfaces that the views show. Takes about as much time as the "
-        "gather without it, and two more passes of EEVEE",
+        "Let glossy surfaces reflect the bounced light, and the surfaces that the views show. Takes about half as much "
+        "time again as the gather without it, and three more passes of EEVEE",
         {"default": False, "options": set(), "update": _rewire}),
     Parameter(
         "views", EnumProperty, "Views",

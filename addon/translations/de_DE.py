@@ -4,10 +4,10 @@
 TEXTS = {
     # Settings
     "Glossy Light": "Glänzendes Licht",
-    "Let glossy surfaces reflect the bounced light, and the surfaces that the views show. Takes about as much time as the "
-    "gather without it, and two more passes of EEVEE":
-        "Glänzende Flächen das indirekte Licht und die Flächen spiegeln lassen, die die Ansichten zeigen. Dauert etwa so lange wie "
-        "das Sammeln ohne es und braucht zwei weitere Passes von EEVEE",
+    "Let glossy surfaces reflect the bounced light, and the surfaces that the views show. Takes about half as much time "
+    "again as the gather without it, and three more passes of EEVEE":
+        "Glänzende Flächen das indirekte Licht und die Flächen spiegeln lassen, die die Ansichten zeigen. Dauert etwa halb so "
+        "lange wie das Sammeln ohne es und braucht drei weitere Passes von EEVEE",
     "The glossy light is no longer linked to the node that adds it":
         "Das glänzende Licht ist nicht mehr mit dem Node verbunden, der es addiert",
     "Light probe spheres and planes hold reflections of the scene already, so the glossy light is left out. Disable them in "
