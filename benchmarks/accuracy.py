@@ -224,7 +224,7 @@ def parse(arguments):
     known = sorted(path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py"))
     if unknown := [name for name in options.presets if name not in known]:
         parser.error(f"there is no preset {unknown[0]}; there are {', '.join(known)}")
-    options.blends = [path.resolve() for path in options.blends or sorted((ROOT / "sample_blends").glob("*.blend"))]
+    options.blends = [path.resolve() for path in options.blends or candidates.diffuse_samples()]
     options.out = options.out.resolve()
     options.page = (options.page or options.out / "accuracy.md").resolve()
     return options

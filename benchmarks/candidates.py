@@ -4,6 +4,7 @@
 Pictures are (H, W, 3) float32, rows top first, linear radiance.
 """
 
+import sys
 import tempfile
 import time
 from contextlib import contextmanager, nullcontext
@@ -13,6 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from . import bench, references
+
+SAMPLES = Path(__file__).resolve().parent.parent / "sample_blends"
 
 # Nodes that only one of the two engines knows, as Blender's own Add menu has it, and Bevel, which EEVEE passes by.
 ONE_ENGINE = {"ShaderNodeBsdfHair", "ShaderNodeBsdfHairPrincipled", "ShaderNodeBsdfRayPortal", "ShaderNodeBsdfSheen",
@@ -24,6 +27,13 @@ BEST = {"ray_tracing_options.trace_max_roughness": 1.0, "ray_tracing_options.scr
 STARTUP = {"use_fast_gi": True}   # where Blender's startup file differs from a scene that a script makes
 CYCLES_SAMPLES = 1, 4, 16
 SEED = 1 << 20               # of these: none that a reference uses
+
+
+def diffuse_samples():
+    """Paths of the sample scenes whose surfaces are matt; those that shine have benchmarks/glossy_study.py."""
+    sys.path.insert(0, str(SAMPLES))
+    from make_samples import DIFFUSE
+    return sorted(SAMPLES / f"{name}.blend" for name in DIFFUSE)
 
 
 class Unmeasurable(Exception):
@@ -168,6 +178,7 @@ def ticked(afterlight, preset):
     @contextmanager
     def mode(scene):
         bench.use_preset(preset, afterlight)
+        scene.afterlight.use_glossy = False  # presets leave it as it is
         scene.afterlight.enabled = True
         try:
             yield

@@ -49,7 +49,7 @@ def measure(path, size, afterlight):
     scene = candidates.open_scene(path, size, SAMPLES, afterlight)
     tried = [candidates.Candidate("EEVEE", "EEVEE", nullcontext, lambda scene, final, plain: final * 0)]
     tried += [candidates.Candidate(name, "EEVEE ray tracing", lambda scene, settings=settings:
-                                   candidates.traced(scene, settings), candidates.added_diffuse)
+                                   candidates.traced(scene, settings), candidates.traced_diffuse)
               for name, settings in TRIED.items()]
     plain = candidates.render_all(scene, tried, 1, afterlight)
     truth = references.Truth(scene, BOUNCES, references.source_key(path))
@@ -73,7 +73,7 @@ def main(arguments):
     options = parser.parse_args(arguments)
     afterlight = session.enable_afterlight()
     found = {}
-    for path in options.blends or sorted((ROOT / "sample_blends").glob("*.blend")):
+    for path in options.blends or candidates.diffuse_samples():
         try:
             found[path.stem] = measure(path.resolve(), options.size, afterlight)
         except candidates.Unmeasurable as reason:

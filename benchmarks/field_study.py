@@ -62,7 +62,7 @@ def study(path, wanted, afterlight):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="*", type=Path, default=sorted((ROOT / "sample_blends").glob("*.blend")))
+    parser.add_argument("files", nargs="*", type=Path, default=candidates.diffuse_samples())
     parser.add_argument("--fields", default="110w,110,120,130")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--samples", type=int, default=512)

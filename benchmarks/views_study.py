@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT / "sample_blends"))
 
 import session  # noqa: E402
 
-from . import bench  # noqa: E402
+from . import bench, candidates  # noqa: E402
 
 
 def study(path, size, afterlight):
@@ -49,7 +49,7 @@ def study(path, size, afterlight):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="*", type=Path, default=sorted((ROOT / "sample_blends").glob("*.blend")))
+    parser.add_argument("files", nargs="*", type=Path, default=candidates.diffuse_samples())
     parser.add_argument("--size", default="320x180")
     wanted = parser.parse_args()
     afterlight = session.enable_afterlight()

@@ -30,6 +30,7 @@ def rendered(scene, enabled, folder):
     from PIL import Image
     scene.afterlight.enabled = enabled
     scene.render.filepath = str(folder / f"{'lit' if enabled else 'plain'}_####.png")
+    scene.frame_set(scene.frame_end)  # an animation that begins at the current frame passes for F12 in its first
     bpy.ops.render.render(animation=True, scene=scene.name)
     if enabled and scene.afterlight.report:
         sys.exit(scene.afterlight.report)

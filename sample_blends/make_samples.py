@@ -17,6 +17,8 @@ import session  # noqa: E402
 
 SAMPLES = ("cornell_box", "sunlit_room", "many_lights", "emissive_sign", "sculpture", "apartment", "street", "desk", "corridor",
            "metal_bin", "polished_floor", "plastics")
+GLOSSY = SAMPLES[-3:]                       # those that Glossy Light is on in
+DIFFUSE = SAMPLES[:-3]                      # those whose light accuracy measures
 MOVING = ("pillars", "walking_shadow", "lamp_switched", "creature")  # shots; apart, as the others are measured by the folder
 LARGEST = 2_000_000                         # bytes; the samples are kept in the repository
 
@@ -31,6 +33,7 @@ def make(name, folder, plain):
     scene.render.filepath = f"//{name}_"
     if not plain:
         session.tick(scene)
+        scene.afterlight.use_glossy = name in GLOSSY
     path = folder / f"{name}.blend"
     path.unlink(missing_ok=True)            # or Blender keeps it as a .blend1
     bpy.ops.wm.save_as_mainfile(filepath=str(path), check_existing=False, compress=True)
@@ -44,7 +47,8 @@ def main():
     parser = argparse.ArgumentParser(description="Write Afterlight's sample scenes.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of: {', '.join(every)}; all without")
     parser.add_argument("--plain", action="store_true", help="without Afterlight, for a look at the bare scenes")
-    parser.add_argument("--folder", type=Path, default=HERE, help="where to write; beside this script without, and the moving shots in moving/ there")
+    parser.add_argument("--folder", type=Path, default=HERE,
+                        help="where to write; beside this script without, and the moving shots in moving/ there")
     options = parser.parse_args(session.arguments())
     if unknown := set(options.names) - set(every):
         parser.error(f"no sample is called {', '.join(sorted(unknown))}; there are {', '.join(every)}")
