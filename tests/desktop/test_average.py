@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An animation whose frames are averaged, in the window: the frames of `blender -b -a`, the first one's nine gathers among them."""
+"""An animation whose frames are averaged, of shiny surfaces, in the window: the frames of `blender -b -a`, the first one's nine
+gathers among them."""
 
 import numpy as np
 import steps
@@ -16,6 +17,9 @@ def animate(folder):
     scene.render.filepath = folder + "/window_"
     settings = scene.afterlight
     settings.method, settings.views, settings.draws, settings.bounces = "RADIOSITY", "CAMERA", 2, 2
+    settings.use_glossy = True
+    shader = bpy.data.materials["White"].node_tree.nodes["Principled BSDF"]
+    shader.inputs["Metallic"].default_value, shader.inputs["Roughness"].default_value = 0.5, 0.3
     for frame, x in ((1, 0.0), (3, 0.1)):
         scene.camera.location.x = x
         scene.camera.keyframe_insert("location", frame=frame)
