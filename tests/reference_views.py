@@ -24,6 +24,7 @@ STEEPEST = 1.1
 DEPTH_TOLERANCE = 0.02
 SLOPE_TOLERANCE = 2.0
 SMOOTH_STEPS = 1, 2
+OUTSHINES = 4.0
 
 
 @dataclass
@@ -263,6 +264,10 @@ def share_free(eyes, places, normals, emitters, steps, jitters=16):
     return free
 
 
+def brightness(light):
+    return np.abs(light).sum(-1)
+
+
 def smooth(level, irradiance, world=None):
     """(H, W, 3): means over the texels around that lie on the same surface, one and two texels apart. level: reference.Level of the
     base. world: (H, W, 3), the light that there is of it: no more than that is taken away."""
@@ -272,6 +277,7 @@ def smooth(level, irradiance, world=None):
     mean = irradiance
     for step in SMOOTH_STEPS:
         total, weights = mean.copy(), np.ones(level.area.shape)
+        brightest, its_weight = mean.copy(), np.ones(level.area.shape)
         for x, y in ((x, y) for y in range(-2, 3) for x in range(-2, 3) if x or y):
             dx, dy = step * x, step * y
             here = slice(max(0, -dy), max(0, height - max(0, dy))), slice(max(0, -dx), max(0, width - max(0, dx)))
@@ -282,5 +288,13 @@ def smooth(level, irradiance, world=None):
             weight = np.where(surface[here] & surface[there], spline[abs(x)] * spline[abs(y)] * flatness * likeness, 0)
             total[here] += weight[..., None] * mean[there]
             weights[here] += weight
+            brighter = (brightness(mean[there]) > brightness(brightest[here])) & (weight > 0)
+            brightest[here] = np.where(brighter[..., None], mean[there], brightest[here])
+            its_weight[here] = np.where(brighter, weight, its_weight[here])
+        if step == 1:
+            others = weights - its_weight
+            most = OUTSHINES * brightness(total - its_weight[..., None] * brightest) / np.maximum(others, 1e-37)
+            over = np.where(others > 1, 1 - np.minimum(most / np.maximum(brightness(brightest), 1e-37), 1), 0)
+            total -= (its_weight * over)[..., None] * brightest
         mean = total / weights[..., None]
     return mean if world is None else np.maximum(mean, -np.pi * np.maximum(world, 0))
