@@ -39,8 +39,8 @@ def seen(afterlight, monkeypatch):
     engine, found, positions = afterlight.addon.pipeline.engine, [], []
     load, gather = engine.passes.load, engine.light.gather_indirect
 
-    def spy_load(path, layer, window):
-        loaded = load(path, layer, window)
+    def spy_load(path, layer, window, step=1):
+        loaded = load(path, layer, window, step)
         channels = {name: channel.pixels for part in OpenEXR.File(path, separate_channels=True).parts
                     for name, channel in part.channels.items()}
         position = np.stack([channels[f"{layer}.Position.{axis}"] for axis in "XYZ"], axis=-1)
