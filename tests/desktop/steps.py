@@ -46,7 +46,9 @@ def tick(window, on=True):
 
 
 def use(method):
+    """Without the average over frames: a frame by the command line's -f is one of an animation, and F12 is none."""
     bpy.context.scene.afterlight.method = method
+    bpy.context.scene.afterlight.use_history = False
 
 
 def long_gather(width=640, height=360):
