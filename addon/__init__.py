@@ -3,10 +3,11 @@
 
 from . import help_page, migration, operators, panel, settings, translations, views_panel
 from .pipeline import engine, handlers, relight, scout, turns
+from .viewport import handlers as viewports
 
 # migration before handlers: what follows a loaded file must find its settings in order.
 PARTS = (translations, help_page, settings, turns, engine, scout, relight, operators, panel, views_panel, migration,
-         handlers)
+         handlers, viewports)
 
 
 def register():

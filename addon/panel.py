@@ -13,6 +13,7 @@ from .pipeline import checks, status, wiring
 from .pipeline.cures import CURES
 from .settings import light_settings
 from .translations import say
+from .viewport import handlers as viewports
 
 FOLDER = str(Path(__file__).parent)
 
@@ -94,6 +95,9 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
         column.active = settings.enabled
         column.prop(settings, "method")
         column.prop(settings, "strength")
+        column.prop(settings, "use_viewport")
+        if settings.enabled and settings.use_viewport and (problem := viewports.problem(context.scene)):
+            _draw_text(layout, problem, "ERROR", context)
         row = layout.row(align=True)
         row.operator("afterlight.update", icon="FILE_REFRESH")
         row.operator("afterlight.free_passes", icon="TRASH", text="")

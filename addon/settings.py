@@ -178,6 +178,12 @@ def _switch(settings, _context):
     if scene.library is None:
         stamp(settings)
         (wiring.connect if settings.enabled else wiring.disconnect)(scene)
+    _switch_viewports(settings, _context)
+
+
+def _switch_viewports(settings, _context):
+    from .viewport import handlers  # which needs the settings
+    handlers.switched(settings.id_data)
 
 
 def _listed(view, context):
@@ -203,6 +209,11 @@ class AfterlightSettings(bpy.types.PropertyGroup):
         name="Indirect Light", options=set(), update=_switch,
         description="Add one bounce of indirect light to EEVEE's renders, gathered from the passes of the finished "
                     "frame. To fade it in an animation, put keyframes on Strength")
+    use_viewport: BoolProperty(
+        name="Viewport", options=set(), update=_switch_viewports,
+        description="Show the indirect light in viewports with rendered shading, while you work. Each change draws EEVEE's passes "
+                    "again, five small pictures; at rest the light is gathered as a render does until its noise is gone, and then "
+                    "nothing more is drawn. Glossy light is left to renders")
     report: StringProperty(
         name="Last Render", get=lambda settings: status.message(settings.id_data),
         description="What kept the last render of this scene from being lit, empty where nothing did")

@@ -134,6 +134,9 @@ PASSES = {
     "reflect": Pass(("camera", "surfel", "views", "sight", "random", "ggx", "march", "receiver_base", "reflect"),
                     ("surfels", "gloss", "emitters", "radiance", "depths"), "irradiance_out"),
     "smooth_gloss": Pass(("camera", "surfel", "bilateral", "smooth_gloss"), ("surfels", "gloss", "irradiance"), "total_out"),
+    "split": Pass(("split",), ("picture",), "channel_out"),
+    "span": Pass(("span",), ("picture",), "span_out"),
+    "mean": Pass(("mean",), ("indirect", "mean"), "mean_out"),
     "probe": Pass(("probe",), ("source",), "probed_out"),
     "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }

@@ -76,15 +76,29 @@ class Passes:
         return {name: count for name, count in counts.items() if count}
 
 
+@dataclass(eq=False)
+class Drawn:
+    """Passes that are on the GPU already. size: (width, height) in pixels. textures: as pipeline.upload() makes them of Passes."""
+
+    size: tuple[int, int]
+    textures: dict
+
+    def lacks_normals(self) -> bool:
+        """As Passes have it. There may be some: nobody has looked."""
+        return True
+
+
 @dataclass(frozen=True, eq=False)
 class View:
     """A picture of the scene that sends light, and the camera that saw it. source: its Passes, or a function that loads
-    them: each is needed only for a moment, and they are large. shine: a function that loads Passes of the same picture which have
-    Glossy Color and Glossy Direct in the places of the diffuse ones, and no emission; or None where they can't be had."""
+    them: each is needed only for a moment, and they are large; or Drawn. shine: a function that loads Passes of the same picture which
+    have Glossy Color and Glossy Direct in the places of the diffuse ones, and no emission; or None where they can't be had. coarse:
+    whether its picture has a pixel for each texel of the depth maps, however large the first view's is."""
 
-    source: Passes | Callable[[], Passes]
+    source: Passes | Drawn | Callable[[], Passes]
     camera: Camera
     shine: Callable[[], Passes | None] = lambda: None
+    coarse: bool = False
 
     @property
     def passes(self) -> Passes:

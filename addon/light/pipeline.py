@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import device
-from .inputs import Camera, Draws, Passes, Settings
+from .inputs import Camera, Draws, Drawn, Passes, Settings
 from .region import TABLE_WIDTH, level_boxes, offsets, samples_at
 
 Texture = device.Texture
@@ -44,9 +44,11 @@ class Pyramid:
         return across * up
 
 
-def upload(passes: Passes, broken: dict[str, int] | None = None, light: bool = True) -> dict[str, Texture]:
+def upload(passes: Passes | Drawn, broken: dict[str, int] | None = None, light: bool = True) -> dict[str, Texture]:
     """One texture a channel, named as the shaders name them, with four neighbouring pixels of a row in each texel; rows
     are filled up with background. broken: filled with Passes.broken(). light: or only depth and normal."""
+    if isinstance(passes, Drawn):
+        return dict(passes.textures)
     groups = {device.SURFACE_CHANNELS: (passes.depth, *passes.normal)}
     if light:
         groups |= {device.COLOR_CHANNELS: passes.diffuse_color,
@@ -66,7 +68,7 @@ def upload(passes: Passes, broken: dict[str, int] | None = None, light: bool = T
     return textures
 
 
-def pack(channels: dict[str, Texture], passes: Passes, camera: Camera, settings: Settings | Draws) -> Pyramid:
+def pack(channels: dict[str, Texture], passes: Passes | Drawn, camera: Camera, settings: Settings | Draws) -> Pyramid:
     """The pyramid's base, from the passes' uploaded channels; its coarser levels have their place, and are empty. Draws
     need none."""
     width, height = passes.size

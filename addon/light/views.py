@@ -51,9 +51,7 @@ def gather_views(views: list[View], settings: Draws, world: np.ndarray | None = 
             raise Cancelled
 
     main, size = views[0].camera, views[0].passes.size
-    table = view_table(views, size, settings)
-    if world is not None and settings.visibility:
-        table["world"][:, :3] = world
+    table = view_table(views, size, settings, world)
     settings = replace(settings, start=start_of(settings, size))
     depths, emitters, receivers, channels = look(views, table, report, broken)
     lap("views", receivers)
@@ -134,13 +132,13 @@ def smooth(base, light, table, steps=SMOOTH_STEPS):
 
 def look(views, table, report=lambda stage, fraction: None, broken=None):
     """(depth maps, emitters, receivers, channels of the main view) of all views. One view's passes are held at a time."""
-    size = views[0].passes.size
     depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
     for index, view in enumerate(views):
         report("views", index / len(views) / 2)
-        channels = upload(view.passes, light=False)
-        device.dispatch("depths", camera_block(view, index, size), channels | {"depths_out": depths},
-                        device.groups(*table["depths"][:2]), table)
+        shown = view.passes
+        channels = upload(shown, light=False)
+        device.dispatch("depths", camera_block(view, index, shown.size), channels | {"depths_out": depths},
+                        device.groups(*table["depths"][:2]), own_table(view, table))
     targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
     for index in reversed(range(len(views))):  # the main one last: its channels are needed again
         report("views", 1 - (index + 1) / len(views) / 2)
@@ -148,10 +146,10 @@ def look(views, table, report=lambda stage, fraction: None, broken=None):
         channels = upload(shown, None if index else broken)
         name = "emit_with_normals" if shown.lacks_normals() else "emit"
         for kind, target in targets.items():
-            block = camera_block(views[index], index, size)
+            block = camera_block(views[index], index, shown.size)
             block["span"][1] = kind == "receivers"
             device.dispatch(name, block, channels | {"depths": depths, "records_out": target},
-                            device.groups(*table[kind][index][1:3]), table)
+                            device.groups(*table[kind][index][1:3]), own_table(views[index], table))
     return depths, *targets.values(), channels
 
 
@@ -181,17 +179,30 @@ def step_of(size):
     return max(1, max(size) // DEPTHS_ACROSS)
 
 
-def view_table(views: list[View], size: tuple[int, int], settings: Draws) -> np.ndarray:
-    """A Views block: cameras, and which records are whose. size: (width, height) of every view in pixels."""
+def view_table(views: list[View], size: tuple[int, int], settings: Draws, world: np.ndarray | None = None) -> np.ndarray:
+    """A Views block: cameras, and which records are whose. size: (width, height) of the views in pixels. world: as gather_views() has
+    it."""
     table, origin = layout(len(views), size), np.asarray(views[0].camera.position, float)
+    if world is not None and settings.visibility:
+        table["world"][:, :3] = world
     table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
     for index, view in enumerate(views):
         camera = view.camera
         eye = np.asarray(camera.position, float) - origin
         table["rotation"][index] = np.concatenate([camera.rotation, -(camera.rotation @ eye)[:, None]], axis=1)
-        table["projection"][index] = *(np.asarray(camera.scale) * step_of(size)), *camera.offset
+        table["projection"][index] = *(np.asarray(camera.scale) * (1 if view.coarse else step_of(size))), *camera.offset
         table["eye"][index] = *eye, camera.orthographic
     return table
+
+
+def own_table(view: View, table: np.ndarray) -> np.ndarray:
+    """The Views block for passes that read the picture of this view, whose pixels it counts in."""
+    if not view.coarse:
+        return table
+    own = table.copy()
+    for sides in (own["depths"][2:3], *(own[kind][:, 3] for kind in KINDS)):
+        sides //= table["depths"][2]
+    return own
 
 
 def layout(count: int, size: tuple[int, int]) -> np.ndarray:

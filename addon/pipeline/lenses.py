@@ -67,6 +67,22 @@ def pose(view, scene, matrix, lens):
     nodes.assign(view.view_layers[0], "use", True)
 
 
+def window_matrix(lens, scene):
+    """(4, 4) float64: the projection of a lens of `scene`."""
+    size, pixel = np.array(passes.window(scene)[0][2:], float), np.array(lens.pixel)
+    low, high = ((side * size / 2 - lens.centre) * pixel for side in (-1, 1))
+    near, far = lens.near, lens.far
+    found = np.zeros((4, 4))
+    found[(0, 1), (0, 1)] = 2 / (high - low)
+    if lens.orthographic:
+        found[:2, 3] = -(high + low) / (high - low)
+        found[2, 2:], found[3, 3] = (-2 / (far - near), -(far + near) / (far - near)), 1
+    else:
+        found[:2, 2] = (high + low) / (high - low)
+        found[2, 2:], found[3, 2] = (-(far + near) / (far - near), -2 * far * near / (far - near)), -1
+    return found
+
+
 def shown(view, scene):
     """All that decides what a view sees of a still scene."""
     camera, data = view.camera, view.camera.data

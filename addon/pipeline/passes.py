@@ -212,17 +212,20 @@ def camera_at(matrix, lens, depsgraph, corner, full, aspect, middle=(0.0, 0.0)):
     (x, y), (width, height) = corner, full
     projection = np.array(lens.calc_matrix_camera(
         depsgraph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1]))
-    orthographic = lens.data.type == "ORTHO"
-    # ndc = (P00 q + P02 * -1) / 1 in perspective, P00 q + P03 in orthographic; ndc = 2 pixel / size - 1.
-    shift = -projection[:2, 3] if orthographic else projection[:2, 2]
-    focus = projection[(0, 1), (0, 1)]
-    size = np.array([width, height], float)
     axes = np.array(matrix.to_3x3())
     to_world = axes / np.linalg.norm(axes, axis=0)  # Blender renders as if a scaled camera were not
+    return camera_through(projection, np.linalg.inv(to_world), matrix.translation, np.array([x, y]) + middle, (width, height),
+                          orthographic=lens.data.type == "ORTHO")
+
+
+def camera_through(projection, rotation, position, corner, full, *, orthographic):
+    """light.Camera of a projection matrix (4, 4) float64. corner: of the picture, within the frame of `full` pixels, in pixels."""
+    # ndc = (P00 q + P02 * -1) / 1 in perspective, P00 q + P03 in orthographic; ndc = 2 pixel / size - 1.
+    shift = -projection[:2, 3] if orthographic else projection[:2, 2]
+    focus, size = projection[(0, 1), (0, 1)], np.array(full, float)
     return light.Camera(
-        rotation=np.linalg.inv(to_world), scale=2 / size / focus,
-        offset=(2 * (np.array([x, y]) + middle) / size - 1 + shift) / focus, orthographic=orthographic,
-        position=np.array(matrix.translation, float))
+        rotation=rotation, scale=2 / size / focus, offset=(2 * np.asarray(corner) / size - 1 + shift) / focus,
+        orthographic=orthographic, position=np.array(position, float))
 
 
 def positions(frame, seen, flat):

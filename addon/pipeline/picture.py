@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The main view as EEVEE has just finished it: which of its points get light, and what it knows of the surfaces that
-send some."""
+"""The main view as EEVEE has it: which of its points get light, and what it knows of the surfaces that send some."""
 
 import numpy as np
 
@@ -8,14 +7,19 @@ from .. import light
 from . import materials, passes, placement, rays, relight, still
 
 
-class Picture:
-    """The main view as EEVEE has just finished it, by the first view layer that is rendered."""
+def finished(scene, camera):
+    """The Picture that EEVEE has just finished of the first view layer that is rendered."""
+    layer = passes.first_layer(scene)
+    relight.forget(scene.session_uid, but=still.files())  # its own file is written again
+    frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
+    return Picture(scene, layer, frame, camera)
 
-    def __init__(self, scene, camera):
-        layer = passes.first_layer(scene)
-        relight.forget(scene.session_uid, but=still.files())  # its own file is written again
-        self._frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
-        self._camera, self._sky = camera, materials.sky(layer.world_override or scene.world)
+
+class Picture:
+    """frame: light.Passes of a view layer of `scene`, seen by light.Camera."""
+
+    def __init__(self, scene, layer, frame, camera):
+        self._frame, self._camera, self._sky = frame, camera, materials.sky(layer.world_override or scene.world)
         self._covered = self._sky if scene.afterlight.use_world_shadow else 0.0
 
     def receivers(self, count, rng):
@@ -36,6 +40,11 @@ class Picture:
         shown = self._frame.depth[row, column]
         toward = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - places
         return (row >= 0) & (depth < 1.01 * shown) & (np.sum(toward * normals, -1) > 0), row, column
+
+    def paths(self, count, geometry, rng, bounces):
+        """(placement.Bounces of so many paths, or None, which of their points the picture shows)."""
+        found = placement.bounces(*self.receivers(count, rng), geometry.cast, self.radiance_by(geometry, rng), rng, bounces)
+        return found, found and self.sees(found.places, found.normals)[0]
 
     def radiance_by(self, geometry, rng):
         """What placement.bounces() asks: from the picture where it shows the point, else by the lamps and materials."""

@@ -34,16 +34,16 @@ def middle(scene, layer):
 
 def _jitter(number, radius):
     """How far EEVEE shifts its pictures for a sample, pixels."""
-    across = (_radical_inverse(number + 1, 2) + 1 / 2) % 1
-    up = (_radical_inverse(number + 1, 3) + 2 / 3) % 1
+    across = (radical_inverse(number + 1, 2) + 1 / 2) % 1
+    up = (radical_inverse(number + 1, 3) + 2 / 3) % 1
     if radius >= DISK_FILTER:
         return across - 0.5, up - 0.5
     length, angle = math.sqrt(across) * DISK * radius, 2 * math.pi * up
     return length * math.cos(angle), length * math.sin(angle)
 
 
-def _radical_inverse(number, base):
-    """The digits of a number mirrored at the point (Halton 1960)."""
+def radical_inverse(number, base):
+    """The digits of a number mirrored at the point (Halton 1960), in [0, 1)."""
     found, share = 0.0, 1.0
     while number:
         share /= base

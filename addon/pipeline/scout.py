@@ -10,8 +10,7 @@ import numpy as np
 
 from .. import light
 from ..translations import say
-from . import checks, lenses, passes, placement, rays, relight, status, turns, views, wiring
-from .picture import Picture
+from . import checks, lenses, passes, picture, placement, rays, relight, status, turns, views, wiring
 from .status import Problem
 
 
@@ -51,13 +50,10 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         if by_hand:
             turns.run(lambda: self._pose_by_hand(scene, depsgraph))
         geometry = rays.Geometry(depsgraph)
-        picture, rng = Picture(scene, camera), np.random.default_rng(scene.afterlight.seed)
+        seen_by_eevee, rng = picture.finished(scene, camera), np.random.default_rng(scene.afterlight.seed)
 
         def look(paths):
-            """(Bounces or None, what the main view sees of it) of so many paths."""
-            light = placement.bounces(*picture.receivers(paths, rng), geometry.cast, picture.radiance_by(geometry, rng), rng,
-                                      scene.afterlight.bounces)
-            return light, light and picture.sees(light.places, light.normals)[0]
+            return seen_by_eevee.paths(paths, geometry, rng, scene.afterlight.bounces)
 
         light, seen = look(placement.PATHS)
         if light is None:

@@ -58,8 +58,7 @@ def fail(scene, text):
     if message(scene) == text:
         return False
     _messages[scene.session_uid] = text
-    if not bpy.app.background:
-        turns.later(lambda: bpy.app.timers.register(lambda: _pop_up(text)))
+    pop_up(text, say("Afterlight: the picture has no indirect light"))
     return True
 
 
@@ -130,11 +129,15 @@ def memory(scene):
     return _memory.get(scene.session_uid, {})
 
 
-def _pop_up(text):
+def pop_up(text, title):
+    """Show a text in the window as soon as that can be, if there is one."""
     def draw(menu, _context):
         menu.layout.label(text=text, translate=False)
-    bpy.context.window_manager.popup_menu(
-        draw, title=say("Afterlight: the picture has no indirect light"), icon="ERROR")
+
+    def show():
+        bpy.context.window_manager.popup_menu(draw, title=title, icon="ERROR")
+    if not bpy.app.background:
+        turns.later(lambda: bpy.app.timers.register(show))
 
 
 def _exit_code():

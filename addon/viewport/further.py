@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The further views of a viewport: those that the last render placed, or the user listed, drawn small and kept on the GPU. When something in
+the scene changes they are drawn again, a few at a time."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from mathutils import Matrix
+
+from .. import light
+from ..light import live
+from ..pipeline import lenses, picture, placement, rays, status, views
+from . import changes, eevee
+
+
+@dataclass(eq=False)
+class Kept:
+    """A view: its (view matrix, window matrix), what was drawn, light.Drawn and light.Camera, and the passes that are to be drawn again."""
+
+    matrices: tuple
+    drawn: light.Drawn
+    camera: light.Camera = None
+    stale: tuple = eevee.ALL
+
+    def age(self, names):
+        """These passes show the scene as it was."""
+        self.stale = tuple(name for name in eevee.ALL if name in (*self.stale, *names))
+
+
+class Further:
+    """Those of one 3D viewport, which may have several regions."""
+
+    def __init__(self):
+        self._film, self._kept, self._wanted, self._stamps = eevee.Film(), [], None, None
+
+    def follow(self, stage):
+        """Be the views that the settings ask for, and know which of them show the scene as it was. Returns whether they are others."""
+        size, pairs, stamps = live.coarse_size(stage.size), _matrices(stage), changes.stamps(stage.scene)
+        wanted = size, stage.shows(), *(tuple(matrix.ravel()) for pair in pairs for matrix in pair)
+        if wanted == self._wanted:
+            for each in self._kept:
+                each.age(eevee.ALL if stamps.shapes != self._stamps.shapes else eevee.LIT if stamps != self._stamps else ())
+            self._stamps = stamps
+            return False
+        self._wanted, self._stamps = wanted, stamps
+        self._kept = [Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), light.Drawn(size, {})) for pair in pairs]
+        return True
+
+    def place(self, stage, drawn, camera):
+        """Where no render has placed views yet, do as the scout of a render would (pipeline/scout.py), by what the viewport shows: light.Drawn
+        through light.Camera. Once for each scene."""
+        scene, settings = stage.scene, stage.scene.afterlight
+        if not views.wanted(scene) or settings.views != "AUTOMATIC" or not views.scout(scene) or views.placed(scene):
+            return
+        start, rng = time.perf_counter(), np.random.default_rng(settings.seed)
+        geometry = rays.Geometry(stage.depsgraph)
+        shown = picture.Picture(scene, stage.layer, live.read(drawn), camera)
+        bounces, seen = shown.paths(placement.CHOOSING_PATHS, geometry, rng, settings.bounces)
+        if bounces is None:  # no surface lights what is shown
+            return
+        poses = placement.place(bounces, seen, geometry.cast, lenses.HALF_FIELD, settings.view_count, rng)
+        shares = placement.covered(bounces, seen, geometry.cast, lenses.HALF_FIELD, poses)
+        views.keep_placed(scene, placement.Placement(poses, shares, placement.CLEARANCE * bounces.size))
+        status.covered(scene, shares, time.perf_counter() - start)
+
+    def is_stale(self):
+        return any(each.stale for each in self._kept)
+
+    def refresh(self, stage, most):
+        """Draw at most so many views again. Within eevee.drawing()."""
+        for each in sorted([each for each in self._kept if each.stale], key=lambda each: len(each.stale), reverse=True)[:most]:
+            camera = self._film.draw(stage, *each.matrices, each.drawn, each.stale)
+            each.camera, each.stale = camera or each.camera, ()
+
+    def views(self):
+        """[light.View] of all that have been drawn."""
+        return [light.View(each.drawn, each.camera, coarse=True) for each in self._kept if each.camera]
+
+    def free(self):
+        self._film.free()
+        self._kept.clear()
+
+
+def _matrices(stage):
+    """[(view matrix, window matrix)], (4, 4) float64 each, of the views that the scene's settings ask for."""
+    scene, settings = stage.scene, stage.scene.afterlight
+    if not views.wanted(scene):
+        return []
+    if settings.views == "MANUAL":
+        cameras = [each.camera.evaluated_get(stage.depsgraph) for each in settings.view_cameras
+                   if each.camera and not views.unusable(each.camera)][:views.MOST]
+        found = [(np.array(camera.matrix_world.normalized()), lenses.lens_of(camera, stage.depsgraph, scene)) for camera in cameras]
+    else:
+        placed = views.placed(scene) if views.scout(scene) else None
+        far = max(stage.space.clip_end, scene.camera.data.clip_end if scene.camera and scene.camera.type == "CAMERA" else 0)
+        found = [(np.asarray(pose), lenses.wide_lens(scene, placed.clearance / 4, far))
+                 for pose in (placed.poses[:settings.view_count] if placed else ())]
+    return [(np.linalg.inv(pose), lenses.window_matrix(lens, scene)) for pose, lens in found]

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Show: the light in a picture of any size, over a region of `extent` pixels; between texels it is interpolated. It is added to what is
+// there by the blending.
+
+void main()
+{
+  ivec2 size = textureSize(light, 0);
+  vec2 place = gl_FragCoord.xy / extent * vec2(size) - 0.5;
+  ivec2 corner = ivec2(floor(place));
+  vec2 share = place - vec2(corner);
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 4; k++) {
+    ivec2 tap = ivec2(k & 1, k >> 1);
+    vec2 weight = mix(1.0 - share, share, vec2(tap));
+    sum += weight.x * weight.y * texelFetch(light, clamp(corner + tap, ivec2(0), size - 1), 0).rgb;
+  }
+  shown = vec4(strength * sum, 0.0);
+}
