@@ -58,6 +58,14 @@ def draw_in_top_bar(menu, _context):
     menu.layout.menu("AFTERLIGHT_MT_indirect_light")
 
 
+def draw_in_viewport_shading(menu, context):
+    """In the pop-over of rendered viewports."""
+    if context.space_data.shading.type == "RENDERED" and _InRenderProperties.poll(context):
+        row = menu.layout.row()
+        row.active = context.scene.afterlight.enabled
+        row.prop(context.scene.afterlight, "use_viewport", text="Indirect Light")
+
+
 class _InRenderProperties:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
@@ -209,9 +217,11 @@ def register():
     _register_classes()
     bpy.utils.register_preset_path(FOLDER)
     bpy.types.TOPBAR_MT_render.append(draw_in_top_bar)
+    bpy.types.VIEW3D_PT_shading.append(draw_in_viewport_shading)
 
 
 def unregister():
+    bpy.types.VIEW3D_PT_shading.remove(draw_in_viewport_shading)
     bpy.types.TOPBAR_MT_render.remove(draw_in_top_bar)
     bpy.utils.unregister_preset_path(FOLDER)
     _unregister_classes()

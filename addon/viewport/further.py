@@ -29,10 +29,10 @@ class Kept:
 
 
 class Further:
-    """Those of one 3D viewport, which may have several regions."""
+    """Those of one 3D viewport, which may have several regions. film: eevee.Film for pictures of their size."""
 
     def __init__(self):
-        self._film, self._kept, self._wanted, self._stamps = eevee.Film(), [], None, None
+        self.film, self._kept, self._wanted, self._stamps = eevee.Film(), [], None, None
 
     def follow(self, stage):
         """Be the views that the settings ask for, and know which of them show the scene as it was. Returns whether they are others."""
@@ -70,7 +70,7 @@ class Further:
     def refresh(self, stage, most):
         """Draw at most so many views again. Within eevee.drawing()."""
         for each in sorted([each for each in self._kept if each.stale], key=lambda each: len(each.stale), reverse=True)[:most]:
-            camera = self._film.draw(stage, *each.matrices, each.drawn, each.stale)
+            camera = self.film.draw(stage, *each.matrices, each.drawn, each.stale)
             each.camera, each.stale = camera or each.camera, ()
 
     def views(self):
@@ -78,7 +78,7 @@ class Further:
         return [light.View(each.drawn, each.camera, coarse=True) for each in self._kept if each.camera]
 
     def free(self):
-        self._film.free()
+        self.film.free()
         self._kept.clear()
 
 

@@ -87,7 +87,7 @@ def _light(stage, address):
         light.device.settle()  # other windows have GPU contexts of their own
     region.show(stage)
     if stage.space.overlay.show_overlays and stage.space.overlay.show_text:
-        _write(stage.region, say("Indirect Light {} / {}", *region.progress(stage)))
+        _write(stage.region, say("Indirect Light {} / {}", *region.progress()))
 
 
 def _write(region, text):

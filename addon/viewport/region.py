@@ -73,16 +73,18 @@ class Region:
         self._changed = 0.0        # when something last did
         self._start = 1            # pixels of a draft along its base's texels
         self._drawn, self._camera = None, None  # of the last draft
-        self._history, self._mean, self._gathers = light.History(), live.Mean(), 0
+        self._history, self._mean = light.History(), live.Mean()
+        self._gathers, self._wanted = 0, REBUILT
 
     def work(self, stage):
         """Bring the light up to date, or nearer to its end, within what one redraw may take. Returns in how many seconds there is more to
         do, None if there is nothing. Raises light.GpuUnavailable."""
-        now = time.perf_counter()
+        now, chosen = time.perf_counter(), _settings(stage)
+        self._wanted = max(REBUILT, chosen.gathers) if isinstance(chosen, light.Draws) else REBUILT
         stale = self._look_for_changes(stage)
         if stale is not None:
-            self._changed, self._gathers = now, 0
-            self._draft(stage, stale)
+            self._draft(stage, stale, chosen)
+            self._changed, self._gathers = time.perf_counter(), 0
             return REST
         if (left := self._changed + REST - now) > 0:
             return left
@@ -92,23 +94,18 @@ class Region:
             with eevee.drawing(stage):
                 self.further.refresh(stage, AT_ONCE)
             self._gathers = 0
-        elif self._gathers < self.wanted(stage):
-            self._gather(stage)
-        return 0.0 if self.further.is_stale() or self._gathers < self.wanted(stage) else None
+        elif self._gathers < self._wanted:
+            self._gather(stage, chosen)
+        return 0.0 if self.further.is_stale() or self._gathers < self._wanted else None
 
     def show(self, stage):
         """Add the light to the picture, if it is of this view."""
         if self._mean.texture is not None and self._seen == stage.sees():
             screen.add(self._mean.texture, stage.extent, stage.scene.afterlight.strength)
 
-    def progress(self, stage):
-        """(gathers that the picture shows, of how many)."""
-        return self._gathers, self.wanted(stage)
-
-    def wanted(self, stage):
-        """Gathers that the picture is the mean of in the end."""
-        chosen = _settings(stage)
-        return max(REBUILT, chosen.gathers) if isinstance(chosen, light.Draws) else REBUILT
+    def progress(self):
+        """(gathers that the picture shows, of how many in the end)."""
+        return self._gathers, self._wanted
 
     def free(self):
         self._film.free()
@@ -127,16 +124,15 @@ class Region:
             return eevee.LIT
         return () if others or before[2] != options else None
 
-    def _draft(self, stage, stale):
+    def _draft(self, stage, stale, chosen):
         start = time.perf_counter()
         size = live.coarse_size(stage.size)
         if self._drawn is None or self._drawn.size != size:
             self._drawn, stale = light.Drawn(size, {}), eevee.ALL
         with eevee.drawing(stage):
-            camera = self._film.draw(stage, stage.rv3d.view_matrix, stage.rv3d.window_matrix, self._drawn, stale)
+            camera = self.further.film.draw(stage, stage.rv3d.view_matrix, stage.rv3d.window_matrix, self._drawn, stale)
             self._camera = camera or self._camera
             self.further.refresh(stage, AT_ONCE)
-        chosen = _settings(stage)
         if isinstance(chosen, light.Draws):
             chosen = replace(chosen, start=self._start, groups=min(chosen.groups, DRAFT_DRAWS),
                              bounces=min(chosen.bounces, DRAFT_BOUNCES), seed=chosen.seed + int(start * 1e3))
@@ -149,12 +145,11 @@ class Region:
         elif seconds < SMOOTHLY / 4:
             self._start = max(self._start // 2, 1)
 
-    def _gather(self, stage):
+    def _gather(self, stage, chosen):
         """Once more, as a render does, through another place in the pixels."""
         drawn = light.Drawn(stage.size, {})
         with eevee.drawing(stage):
             camera = self._film.draw(stage, stage.rv3d.view_matrix, _shifted(stage.rv3d.window_matrix, self._gathers, stage.size), drawn)
-        chosen = _settings(stage)
         chosen = replace(chosen, seed=chosen.seed + STRIDE * self._gathers)
         if isinstance(chosen, light.Draws):
             chosen = replace(chosen, start=start_of(chosen, stage.size))

@@ -7,6 +7,7 @@ import numpy as np
 import OpenEXR
 
 ENABLED = "afterlight.enabled"
+BESIDE_THE_BOX = 110       # pixels from the left, on the panel's name
 MODULE = "bl_ext.user_default.afterlight"
 
 
@@ -43,6 +44,29 @@ def tick(window, on=True):
     window.point_at(ENABLED)
     window.click()
     window.wait(f"bpy.context.scene.afterlight.enabled == {on}")
+
+
+def widen(window):
+    """Drag the editor's left edge to where the panel has room."""
+    window.over("PROPERTIES")
+    window.key("Escape")  # away with the splash screen, where this is the first that a Blender sees of the mouse
+    time.sleep(0.5)
+    _, y, _, height = window.value("box('PROPERTIES')")
+    x = window.value("area('PROPERTIES')[1].x")  # the tabs lie between it and the main region
+    window.move(x - 1, y + height / 2)
+    time.sleep(0.5)
+    window.xdotool("mousedown", 1)
+    for left in (20, 100, 170, 180):
+        window.move(x - left, y + height / 2)
+        time.sleep(0.1)
+    window.xdotool("mouseup", 1)
+    window.wait(f"area('PROPERTIES')[1].x < {x} - 100")
+
+
+def open_panel(window):
+    """Ctrl-click on the name: this panel opens, and all others close."""
+    window.point_at(ENABLED)
+    window.xdotool("mousemove_relative", BESIDE_THE_BOX - 36, 0, "keydown", "ctrl", "click", 1, "keyup", "ctrl")
 
 
 def use(method):
