@@ -26,12 +26,20 @@ class Parameter:
     options: dict = field(default_factory=dict)
 
     def blender_property(self):
-        return self.kind(name=self.label, description=self.tooltip, **self.options)
+        return self.kind(name=self.label, description=self.tooltip, **{"update": _show} | self.options)
 
 
-def _rewire(settings, _context):
+def _show(settings, _context):
+    """What lit viewports show has changed: Blender does not know that they depend on it."""
+    if settings.enabled and settings.use_viewport:
+        from .viewport import handlers  # which needs the settings
+        handlers.redraw()
+
+
+def _rewire(settings, context):
     """The number of views has changed."""
     wiring.connect_if_enabled(settings.id_data)
+    _show(settings, context)
 
 
 DEFAULT_VIEWS = "AUTOMATIC"
