@@ -20,7 +20,7 @@ def address(section=""):
 def manual_map():
     """What Blender asks add-ons for on right click > Online Manual: how URLs begin, and (pattern, end) of each."""
     from .settings import AfterlightSettings, PARAMETERS
-    names = ["enabled", *(parameter.name for parameter in PARAMETERS)]
+    names = ["enabled", "use_viewport", *(parameter.name for parameter in PARAMETERS)]
     sections = [(f"bpy.types.{AfterlightSettings.__name__}.{name}".lower(), f"#{name}") for name in names]
     return PATH.as_uri(), (*sections, (f"bpy.types.{AfterlightSettings.__name__}*".lower(), ""),
                            ("bpy.ops.afterlight.preset_add*", "#presets"), ("bpy.ops.afterlight.mend*", "#messages"),

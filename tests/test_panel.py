@@ -19,7 +19,7 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
                 *(drawn(addon.views_panel.AFTERLIGHT_PT_views)
                   if addon.views_panel.AFTERLIGHT_PT_views.poll(bpy.context) else ())]
 
-    names = {parameter.name for parameter in addon.settings.PARAMETERS}
+    names = {"use_viewport", *(parameter.name for parameter in addon.settings.PARAMETERS)}
     paper, radiosity = {"samples", "radius"}, {"draws", "bounces", "use_visibility", "use_world_shadow", "use_glossy",
                                                 "views", "view_count", "accumulate", "use_history", "denoise"}
     for method, others in (("RADIOSITY", paper), ("PAPER", radiosity)):

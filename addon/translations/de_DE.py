@@ -22,6 +22,15 @@ TEXTS = {
     "in an animation, put keyframes on Strength":
         "EEVEEs Bildern indirektes Licht nach einer Reflexion hinzufügen, gesammelt aus den Passes des fertigen "
         "Bildes. Zum Ein- und Ausblenden in einer Animation Schlüsselbilder auf die Stärke setzen",
+    "Viewport": "Ansichtsfenster",
+    "Show the indirect light in viewports with rendered shading, while you work. Each change draws EEVEE's passes again, five small "
+    "pictures; at rest the light is gathered as a render does until its noise is gone, and then nothing more is drawn. Glossy light "
+    "is left to renders":
+        "Das indirekte Licht beim Arbeiten in gerenderten Ansichtsfenstern zeigen. Bei jeder Änderung werden EEVEEs Passes neu gezeichnet, "
+        "fünf kleine Bilder; in Ruhe wird das Licht wie beim Rendern gesammelt, bis das Rauschen weg ist, und dann nichts mehr gezeichnet. "
+        "Glänzendes Licht bleibt dem Rendern überlassen",
+    "Afterlight: the viewport has no indirect light": "Afterlight: Das Ansichtsfenster hat kein indirektes Licht",
+    "Indirect Light {} / {}": "Indirekte Beleuchtung {} / {}",
     "Last Render": "Letztes Rendern",
     "What kept the last render of this scene from being lit, empty where nothing did":
         "Was das letzte Rendern dieser Szene ohne Licht ließ, sonst leer",
