@@ -33,6 +33,7 @@ class Further:
 
     def __init__(self):
         self.film, self._kept, self._wanted, self._stamps = eevee.Film(), [], None, None
+        self._in_vain = None       # what place() saw where it found no place
 
     def follow(self, stage):
         """Be the views that the settings ask for, and know which of them show the scene as it was. Returns whether they are others."""
@@ -49,15 +50,18 @@ class Further:
 
     def place(self, stage, drawn, camera):
         """Where no render has placed views yet, do as the scout of a render would (pipeline/scout.py), by what the viewport shows: light.Drawn
-        through light.Camera. Once for each scene."""
+        through light.Camera. Once for each scene, or again when it has changed where there was nothing to light it."""
         scene, settings = stage.scene, stage.scene.afterlight
         if not views.wanted(scene) or settings.views != "AUTOMATIC" or not views.scout(scene) or views.placed(scene):
+            return
+        if self._in_vain == (self._wanted, self._stamps):
             return
         start, rng = time.perf_counter(), np.random.default_rng(settings.seed)
         geometry = rays.Geometry(stage.depsgraph)
         shown = picture.Picture(scene, stage.layer, live.read(drawn), camera)
         bounces, seen = shown.paths(placement.CHOOSING_PATHS, geometry, rng, settings.bounces)
         if bounces is None:  # no surface lights what is shown
+            self._in_vain = self._wanted, self._stamps
             return
         poses = placement.place(bounces, seen, geometry.cast, lenses.HALF_FIELD, settings.view_count, rng)
         shares = placement.covered(bounces, seen, geometry.cast, lenses.HALF_FIELD, poses)

@@ -96,7 +96,10 @@ class Region:
             self._gathers = 0
         elif self._gathers < self._wanted:
             self._gather(stage, chosen)
-        return 0.0 if self.further.is_stale() or self._gathers < self._wanted else None
+        if self.further.is_stale() or self._gathers < self._wanted:
+            return 0.0
+        self._film.free()  # it is large: EEVEE has a pool of shadows for each
+        return None
 
     def show(self, stage):
         """Add the light to the picture, if it is of this view."""

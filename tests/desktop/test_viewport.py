@@ -207,9 +207,18 @@ def test_all_that_is_changed_is_followed(window, afterlight, first):
         assert window.value("str(viewports._refused)") == "{}", name
 
 
-def test_quad_view_and_local_view(window, afterlight):
+def test_quad_view_local_view_and_another_size(window, afterlight):
     open_box(window, scale="8")
     switch_on(window)
+    wait_for_light(window)
+    width = window.value("box('VIEW_3D')[2]")
+    window.run(operate, "bpy.ops.screen.screen_full_area()")
+    window.wait(f"box('VIEW_3D')[2] > {width}")
+    time.sleep(1)
+    wait_for_light(window)
+    window.run(operate, "bpy.ops.screen.screen_full_area()")
+    window.wait(f"box('VIEW_3D')[2] == {width}")
+    time.sleep(1)
     wait_for_light(window)
     window.run(operate, "bpy.ops.screen.region_quadview()")
     window.wait("len(viewports._regions) == 4")
