@@ -32,10 +32,12 @@ def follow_edits(scene, depsgraph):
     """Blender has evaluated what was edited."""
     if depsgraph.mode == "RENDER" or not scene.afterlight.use_viewport:
         return
-    changed = [update for update in depsgraph.updates if update.id.id_type != "SCENE"  # which is said of any setting
+    changed = [update.id.original for update in depsgraph.updates if update.id.id_type != "SCENE"  # which is said of any setting
                and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)]
     outline = _outline(scene, depsgraph)
-    if any(not _is_lamp(update.id) for update in changed) or _outlines.get(scene.session_uid) not in (None, outline):
+    lamps = [each for each in changed if _is_lamp(each)]
+    trees = [each.node_tree for each in lamps if each.id_type in LAMPS]
+    if any(each not in lamps and each not in trees for each in changed) or _outlines.get(scene.session_uid) not in (None, outline):
         _change(scene, "shapes")
     elif changed:
         _change(scene, "lamps")
