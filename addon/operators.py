@@ -131,14 +131,14 @@ PRESETS = Path(__file__).resolve().parent / "presets" / "afterlight"
 TOOLTIPS = {
     "draft": lambda: say(
         "To set up the light of a shot: 4 views at most, 3 bounces. Its light is off by 14 % in the sample scenes, "
-        "where EEVEE's ray tracing at its best is off by 61 %. Without a graphics card a frame takes 2.3 times as long "
+        "where EEVEE's ray tracing at its best is off by 61 %. Without a graphics card a frame takes 2.5 times as long "
         "as EEVEE's own 16 samples"),
     "paper": lambda: say(
         "As the paper has it: one bounce between what the camera sees, through whatever stands in between, and no "
         "further views. Its light is off by 60 % in the sample scenes; a frame takes hardly longer than EEVEE's own"),
     "production": lambda: say(
         "For final pictures: 7 views at most, 4 bounces. Its light is off by 10 % in the sample scenes, where EEVEE's "
-        "ray tracing at its best is off by 61 %. Without a graphics card a frame takes 3.0 times as long as EEVEE's own"
+        "ray tracing at its best is off by 61 %. Without a graphics card a frame takes 3.2 times as long as EEVEE's own"
         " 16 samples"),
     "reference": lambda: say(
         "To judge the others by: 9 views at most, 8 bounces, four times the draws, and every pixel gathers for itself"),

@@ -163,10 +163,10 @@ TEXTS = {
     "Set everything in this panel but Strength and Seed as the preset has it":
         "Alles in diesem Panel außer Stärke und Startwert so setzen, wie es die Voreinstellung hat",
     "To set up the light of a shot: 4 views at most, 3 bounces. Its light is off by 14 % in the sample scenes, "
-    "where EEVEE's ray tracing at its best is off by 61 %. Without a graphics card a frame takes 2.3 times as long "
+    "where EEVEE's ray tracing at its best is off by 61 %. Without a graphics card a frame takes 2.5 times as long "
     "as EEVEE's own 16 samples":
         "Um das Licht einzurichten: höchstens 4 Ansichten, 3 Reflexionen. Das Licht liegt in den Beispielszenen um 14 %"
-        " daneben, EEVEEs Raytracing im besten Fall um 61 %. Ohne Grafikkarte dauert ein Bild 2,3-mal so lange wie "
+        " daneben, EEVEEs Raytracing im besten Fall um 61 %. Ohne Grafikkarte dauert ein Bild 2,5-mal so lange wie "
         "EEVEEs eigene 16 Samples",
     "As the paper has it: one bounce between what the camera sees, through whatever stands in between, and no "
     "further views. Its light is off by 60 % in the sample scenes; a frame takes hardly longer than EEVEE's own":
@@ -174,10 +174,10 @@ TEXTS = {
         "hindurch, und keine weiteren Ansichten. Das Licht liegt in den Beispielszenen um 60 % daneben; ein Bild dauert"
         " kaum länger als mit EEVEE allein",
     "For final pictures: 7 views at most, 4 bounces. Its light is off by 10 % in the sample scenes, where EEVEE's "
-    "ray tracing at its best is off by 61 %. Without a graphics card a frame takes 3.0 times as long as EEVEE's own"
+    "ray tracing at its best is off by 61 %. Without a graphics card a frame takes 3.2 times as long as EEVEE's own"
     " 16 samples":
         "Für fertige Bilder: höchstens 7 Ansichten, 4 Reflexionen. Das Licht liegt in den Beispielszenen um 10 % "
-        "daneben, EEVEEs Raytracing im besten Fall um 61 %. Ohne Grafikkarte dauert ein Bild 3,0-mal so lange wie "
+        "daneben, EEVEEs Raytracing im besten Fall um 61 %. Ohne Grafikkarte dauert ein Bild 3,2-mal so lange wie "
         "EEVEEs eigene 16 Samples",
     "To judge the others by: 9 views at most, 8 bounces, four times the draws, and every pixel gathers for itself":
         "Um die anderen zu beurteilen: höchstens 9 Ansichten, 8 Reflexionen, viermal so viele Ziehungen, und jeder "
