@@ -8,6 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import settings
+from .pipeline import events
 
 DEFAULTS_OF_0_1_0 = {
     "method": "PAPER", "views": "CAMERA",  # all that there was
@@ -66,14 +67,11 @@ HANDLERS = (("load_post", migrate_all), ("save_pre", stamp_all),
 
 
 def register():
-    for event, handler in HANDLERS:
-        getattr(bpy.app.handlers, event).append(handler)
+    events.listen(HANDLERS)
     bpy.app.timers.register(_once, first_interval=0.0)
 
 
 def unregister():
-    for event, handler in HANDLERS:
-        if handler in getattr(bpy.app.handlers, event):
-            getattr(bpy.app.handlers, event).remove(handler)
+    events.ignore(HANDLERS)
     if bpy.app.timers.is_registered(_once):
         bpy.app.timers.unregister(_once)

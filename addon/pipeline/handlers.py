@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, history, leftovers, nodes, passes, relight, status, still, turns, views, wiring, world
+from . import checks, events, history, leftovers, nodes, passes, relight, status, still, turns, views, wiring, world
 from .engine import AfterlightEngine
 
 
@@ -104,8 +104,7 @@ HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", follow_all), 
 
 
 def register():
-    for event, handler in HANDLERS:
-        getattr(bpy.app.handlers, event).append(handler)
+    events.listen(HANDLERS)
     status.register()
     leftovers.register()
 
@@ -113,6 +112,4 @@ def register():
 def unregister():
     leftovers.unregister()
     status.unregister()
-    for event, handler in HANDLERS:
-        if handler in getattr(bpy.app.handlers, event):
-            getattr(bpy.app.handlers, event).remove(handler)
+    events.ignore(HANDLERS)

@@ -14,7 +14,7 @@ from bpy.app.handlers import persistent
 
 from .. import light
 from ..translations import say
-from . import passes, wiring
+from . import events, passes, wiring
 from .status import Problem
 from .wiring import ENGINE
 
@@ -216,14 +216,11 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 
 def register():
     _register_classes()
-    for event, handler in HANDLERS:
-        getattr(bpy.app.handlers, event).append(handler)
+    events.listen(HANDLERS)
 
 
 def unregister():
-    for event, handler in HANDLERS:
-        if handler in getattr(bpy.app.handlers, event):
-            getattr(bpy.app.handlers, event).remove(handler)
+    events.ignore(HANDLERS)
     finish()
     forget_all()
     _unregister_classes()

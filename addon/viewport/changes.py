@@ -4,8 +4,9 @@ surfaces are where they were."""
 
 from dataclasses import dataclass, replace
 
-import bpy
 from bpy.app.handlers import persistent
+
+from ..pipeline import events
 
 LAMPS = {"LIGHT", "WORLD"}
 
@@ -76,12 +77,9 @@ HANDLERS = (("depsgraph_update_post", follow_edits), ("frame_change_post", follo
 
 
 def register():
-    for event, handler in HANDLERS:
-        getattr(bpy.app.handlers, event).append(handler)
+    events.listen(HANDLERS)
 
 
 def unregister():
-    for event, handler in HANDLERS:
-        if handler in getattr(bpy.app.handlers, event):
-            getattr(bpy.app.handlers, event).remove(handler)
+    events.ignore(HANDLERS)
     forget()

@@ -8,7 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import light
-from ..pipeline import checks, status, wiring
+from ..pipeline import checks, events, status, wiring
 from ..translations import say
 from . import changes, screen
 from .further import Further
@@ -160,9 +160,12 @@ def forget(*_):
     _refused.clear()
 
 
+HANDLERS = ("load_pre", forget),
+
+
 def register():
     changes.register()
-    bpy.app.handlers.load_pre.append(forget)
+    events.listen(HANDLERS)
     if not bpy.app.background:
         for call, moment in ((_before, "PRE_VIEW"), (_after, "POST_PIXEL")):
             _handles.append(bpy.types.SpaceView3D.draw_handler_add(call, (), "WINDOW", moment))
@@ -171,8 +174,7 @@ def register():
 def unregister():
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
-    if forget in bpy.app.handlers.load_pre:
-        bpy.app.handlers.load_pre.remove(forget)
+    events.ignore(HANDLERS)
     changes.unregister()
     forget()
     screen.release()

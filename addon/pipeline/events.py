@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's lists of handlers."""
+
+import bpy
+
+
+def listen(handlers):
+    """Have Blender call functions: (name of one of its lists, function) each."""
+    for event, handler in handlers:
+        getattr(bpy.app.handlers, event).append(handler)
+
+
+def ignore(handlers):
+    """Undo listen(). Loading factory settings may have done so already."""
+    for event, handler in handlers:
+        if handler in getattr(bpy.app.handlers, event):
+            getattr(bpy.app.handlers, event).remove(handler)
