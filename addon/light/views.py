@@ -139,6 +139,7 @@ def look(views, table, report=lambda stage, fraction: None, broken=None):
         channels = upload(shown, light=False)
         device.dispatch("depths", camera_block(view, index, shown.size), channels | {"depths_out": depths},
                         device.groups(*table["depths"][:2]), own_table(view, table))
+        del shown  # the next one is loaded before its name is given on
     targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
     for index in reversed(range(len(views))):  # the main one last: its channels are needed again
         report("views", 1 - (index + 1) / len(views) / 2)
