@@ -32,14 +32,14 @@ class History:
     light: Texture | None = None
     camera: Camera | None = None
 
-    def go_on(self, base, camera, motion, views, light, gathers, more) -> Texture:
+    def go_on(self, base, camera, motion, views, light, gathers, more=None) -> Texture:
         """The mean of `light`, that of so many gathers of a frame, and of what is known; which is kept for the next frame.
 
         base, camera: of the frame. motion: light.Passes.motion. views: the Views block. more(light, first, last): the mean of
-        `light`, which is that of gathers up to `first`, and of those up to `last`."""
+        `light`, which is that of gathers up to `first`, and of those up to `last`; without it no frame is gathered more than once."""
         known, earlier = reproject(self, base, camera, motion, views), (FRAMES - 1) * gathers
         mean = accumulate(base, known, light, gathers, earlier, drift=True)
-        if gathers < REBUILT and is_new(mean, gathers):
+        if more and gathers < REBUILT and is_new(mean, gathers):
             del mean
             light = more(light, gathers, REBUILT)
             mean = accumulate(base, known, light, REBUILT, earlier, drift=True)

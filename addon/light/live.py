@@ -9,7 +9,7 @@
 import numpy as np
 
 from . import device
-from .history import FRAMES, History, accumulate, reproject
+from .history import History
 from .inputs import Camera, Drawn, Draws, Passes, Settings, View
 from .pipeline import Texture, composite, gather, merge, pack, upload, upsample
 from .views import SMOOTH_STEPS, UNSMOOTHED, gather as gather_all, layout, look, smooth, view_table
@@ -83,9 +83,7 @@ def indirect(views: list[View], size: tuple[int, int], settings: Settings | Draw
     base = pack(channels, shown, main, settings)
     light, *_ = gather_all(settings, table, base, depths, emitters, receivers, lambda *_: None, lambda *_: None)
     if history is not None:
-        known = reproject(history, base, main, None, table)
-        light = accumulate(base, known, light, 1, FRAMES - 1, drift=True)
-        history.base, history.light, history.camera = base, light, main
+        light = history.go_on(base, main, None, table, light, 1)
     return composite(channels, base, smooth(base, light, table, SMOOTH_STEPS if settings.smooth else UNSMOOTHED))
 
 

@@ -51,6 +51,7 @@ def follow_frames(scene, *_):
     _change(scene, "shapes")
 
 
+@persistent
 def forget(*_):
     _stamps.clear()
     _outlines.clear()

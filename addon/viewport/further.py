@@ -67,6 +67,7 @@ class Further:
         shares = placement.covered(bounces, seen, geometry.cast, lenses.HALF_FIELD, poses)
         views.keep_placed(scene, placement.Placement(poses, shares, placement.CLEARANCE * bounces.size))
         status.covered(scene, shares, time.perf_counter() - start)
+        self.follow(stage)
 
     def is_stale(self):
         return any(each.stale for each in self._kept)

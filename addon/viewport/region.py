@@ -89,7 +89,6 @@ class Region:
         if (left := self._changed + REST - now) > 0:
             return left
         self.further.place(stage, self._drawn, self._camera)
-        self.further.follow(stage)
         if self.further.is_stale():
             with eevee.drawing(stage):
                 self.further.refresh(stage, AT_ONCE)

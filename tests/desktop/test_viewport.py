@@ -75,6 +75,12 @@ def switch_on(window):
     window.value("setattr(bpy.context.scene.afterlight, 'use_viewport', True)")
 
 
+def open_lit_box(window, scale="4"):
+    open_box(window, scale)
+    switch_on(window)
+    return wait_for_light(window)
+
+
 def test_it_is_switched_by_mouse_and_comes_to_rest(window, afterlight):
     open_box(window)
     time.sleep(6)  # EEVEE's own samples
@@ -147,9 +153,7 @@ def test_the_camera_s_view_is_the_render_s_picture(window, afterlight):
 
 
 def test_a_lamp_that_a_script_moves_shows(window, afterlight):
-    open_box(window)
-    switch_on(window)
-    wait_for_light(window)
+    open_lit_box(window)
     window.run(change, "bpy.data.objects['Lamp'].location = (-1.4, 0.2, 0.3)")
     time.sleep(1)
     wait_for_light(window)
@@ -191,9 +195,7 @@ def operate(code):
 @pytest.mark.parametrize("first", range(0, len(CHANGES), 4))  # no more at once, for the sake of Vulkan's software driver (docs/desktop.md)
 def test_all_that_is_changed_is_followed(window, afterlight, first):
     """One thing after another: each is lit anew, and is at rest afterwards."""
-    open_box(window)
-    switch_on(window)
-    wait_for_light(window)
+    open_lit_box(window)
     for name, code in list(CHANGES.items())[first:first + 4]:
         window.run(change, code)
         time.sleep(0.5)
@@ -208,9 +210,7 @@ def test_all_that_is_changed_is_followed(window, afterlight, first):
 
 
 def test_quad_view_local_view_and_another_size(window, afterlight):
-    open_box(window, scale="8")
-    switch_on(window)
-    wait_for_light(window)
+    open_lit_box(window, scale="8")
     width = window.value("box('VIEW_3D')[2]")
     window.run(operate, "bpy.ops.screen.screen_full_area()")
     window.wait(f"box('VIEW_3D')[2] > {width}")
@@ -237,9 +237,7 @@ def test_quad_view_local_view_and_another_size(window, afterlight):
 
 
 def test_other_shadings_are_left_alone(window, afterlight):
-    open_box(window, scale="8")
-    switch_on(window)
-    wait_for_light(window)
+    open_lit_box(window, scale="8")
     for shading in ("SOLID", "MATERIAL", "WIREFRAME"):
         window.run(change, f"space.shading.type = {shading!r}")
         window.wait("not viewports._regions and not viewports._further", 60)
@@ -252,9 +250,7 @@ def test_other_shadings_are_left_alone(window, afterlight):
 
 def test_a_second_viewport_undo_and_another_file(window, afterlight):
     """Nothing is kept for what is not shown."""
-    open_box(window, scale="8")
-    switch_on(window)
-    wait_for_light(window)
+    open_lit_box(window, scale="8")
     window.run(change, "timeline = area('DOPESHEET_EDITOR')[1]; timeline.type = 'VIEW_3D'; "
                        "timeline.spaces.active.shading.type = 'RENDERED'")
     window.wait("len(viewports._regions) == 2", 60)
@@ -280,9 +276,7 @@ def test_a_second_viewport_undo_and_another_file(window, afterlight):
 
 
 def test_a_render_and_a_viewport_go_together(window, afterlight):
-    open_box(window, scale="8")
-    switch_on(window)
-    before = wait_for_light(window)
+    before = open_lit_box(window, scale="8")
     window.render()
     assert window.value("bpy.context.scene.afterlight.report") == ""
     steps.result(window, "viewport_rendered")
@@ -305,9 +299,7 @@ def refuse_no_more():
 
 
 def test_a_gpu_that_refuses_switches_it_off_with_a_message(window, afterlight):
-    open_box(window, scale="8")
-    switch_on(window)
-    wait_for_light(window)
+    open_lit_box(window, scale="8")
     window.run(refuse)
     try:
         window.run(change, "bpy.data.objects['Lamp'].location.x = -1")

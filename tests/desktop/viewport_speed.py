@@ -24,8 +24,8 @@ CASES = (("Paper, Quarter, 64 samples", {"method": "PAPER", "start": "QUARTER", 
 # What is timed: a stage, the module of the extension, and the names in it. A stage has what those within it do not.
 STAGES = (("passes", "viewport.eevee", "Film.draw"), ("split", "light.live", "split"), ("views, emitters", "light.live", "look"),
           ("surfels", "light.live", "pack"), ("pyramid", "light.live", "merge"), ("gather", "light.live", "gather"),
-          ("gather", "light.live", "gather_all"), ("table of draws", "light.views", "draw_table"), ("history", "light.live", "accumulate"),
-          ("history", "light.live", "reproject"), ("smooth", "light.live", "smooth"), ("smooth", "light.live", "upsample"),
+          ("gather", "light.live", "gather_all"), ("table of draws", "light.views", "draw_table"), ("history", "light.history", "History.go_on"),
+          ("smooth", "light.live", "smooth"), ("smooth", "light.live", "upsample"),
           ("composite", "light.live", "composite"), ("mean", "light.live", "Mean.add"), ("place views", "viewport.further", "Further.place"))
 EEVEE = "passes", "split"
 
