@@ -8,7 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import settings
-from .pipeline import events
+from .pipeline import events, wiring
 
 DEFAULTS_OF_0_1_0 = {
     "method": "PAPER", "views": "CAMERA",  # all that there was
@@ -44,6 +44,7 @@ def migrate(old):
 def migrate_all(*_):
     """A file was opened, or scenes came in from one."""
     for scene in bpy.data.scenes:
+        wiring.adopt(scene)
         if scene.library is None:
             migrate(scene.afterlight)
 

@@ -11,7 +11,7 @@ from bpy.types import Operator
 from bpy_extras import anim_utils
 
 from . import help_page
-from .pipeline import wiring
+from .pipeline import roles, wiring
 from .pipeline.cures import CURES
 from .settings import PARAMETERS
 from .translations import say
@@ -179,7 +179,7 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
 def other_scenes(scene):
     """The scenes of the file that settings can be copied to."""
     return [other for other in bpy.data.scenes
-            if other != scene and other.library is None and not wiring.is_helper(other)]
+            if other != scene and other.library is None and not roles.is_helper(other)]
 
 
 def _warn_of_animation(operator, scene):

@@ -9,7 +9,7 @@ from bl_ui.utils import PresetPanel
 from bpy.types import Menu, Panel
 
 from . import light, operators
-from .pipeline import checks, status, wiring
+from .pipeline import checks, roles, status
 from .pipeline.cures import CURES
 from .settings import light_settings
 from .translations import say
@@ -75,7 +75,7 @@ class _InRenderProperties:
     def poll(cls, context):
         # Where the box is ticked the panel stays, to say that another engine can't be lit.
         scene = context.scene
-        return scene.render.engine == "BLENDER_EEVEE" or scene.afterlight.enabled or wiring.is_helper(scene)
+        return scene.render.engine == "BLENDER_EEVEE" or scene.afterlight.enabled or roles.is_helper(scene)
 
 
 class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
@@ -83,7 +83,7 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context):
-        self.layout.active = not wiring.is_helper(context.scene)
+        self.layout.active = not roles.is_helper(context.scene)
         self.layout.prop(context.scene.afterlight, "enabled", text="")
 
     def draw_header_preset(self, _context):
@@ -96,7 +96,7 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
     def draw(self, context):
         layout, settings = self.layout, context.scene.afterlight
         layout.use_property_split, layout.use_property_decorate = True, True
-        if settings.enabled or wiring.is_helper(context.scene):
+        if settings.enabled or roles.is_helper(context.scene):
             for finding in checks.findings(context.scene):
                 _draw_finding(layout, finding, context)
         column = layout.column()

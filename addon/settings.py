@@ -8,10 +8,10 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
                        PointerProperty, StringProperty)
 
 from . import light
-from .pipeline import status, views, wiring
+from .pipeline import rendering, roles, status, views, wiring
 
 
-VERSION = 0, 3, 0          # the manifest's; what older ones stored otherwise: migration.py
+VERSION = 0, 4, 0          # the manifest's; what older ones stored otherwise: migration.py
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,11 @@ def stamp(settings):
 
 def _switch(settings, _context):
     scene = settings.id_data
-    if scene.library is None:
+    if roles.is_helper(scene):  # a script that ticks the box of all scenes does not mean those that only serve to light one
+        if settings.enabled:
+            settings.enabled = False
+        return
+    if scene.library is None and not rendering.postpones(scene):
         stamp(settings)
         (wiring.connect if settings.enabled else wiring.disconnect)(scene)
     _switch_viewports(settings, _context)
@@ -229,6 +233,13 @@ class AfterlightSettings(bpy.types.PropertyGroup):
     version: IntVectorProperty(
         size=3, default=(0, 1, 0), options={"HIDDEN"},
         description="The version of Afterlight that these settings are of. 0.1.0 stored none")
+    role: StringProperty(
+        options={"HIDDEN"},
+        description="How this scene helps to light another: HELPER, SCOUT or VIEW. Empty in scenes of the user's own")
+    serves: PointerProperty(
+        type=bpy.types.Scene, options={"HIDDEN"}, description="The scene that this one helps to light")
+    own_camera: PointerProperty(
+        type=bpy.types.Object, options={"HIDDEN"}, description="The camera that Afterlight made for this scene")
     helper: PointerProperty(
         type=bpy.types.Scene, options={"HIDDEN"},
         description="The scene through which Blender calls Afterlight while it renders this one")
@@ -244,19 +255,29 @@ class AfterlightSettings(bpy.types.PropertyGroup):
     compositing_was_off: BoolProperty(options={"HIDDEN"})
 
 
+class AfterlightLayer(bpy.types.PropertyGroup):
+    """`view_layer.afterlight`."""
+
+    passes: StringProperty(
+        options={"HIDDEN"},
+        description="Switches of the passes that Afterlight turned on in this view layer, with commas between them")
+
+
 AfterlightSettings.__annotations__.update(
     (parameter.name, parameter.blender_property()) for parameter in PARAMETERS)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (AfterlightView, AfterlightViewScene, AfterlightSettings))
+    (AfterlightView, AfterlightViewScene, AfterlightSettings, AfterlightLayer))
 
 
 def register():
     _register_classes()
     bpy.types.Scene.afterlight = PointerProperty(type=AfterlightSettings)
+    bpy.types.ViewLayer.afterlight = PointerProperty(type=AfterlightLayer)
 
 
 def unregister():
+    del bpy.types.ViewLayer.afterlight
     del bpy.types.Scene.afterlight
     _unregister_classes()

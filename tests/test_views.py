@@ -110,7 +110,7 @@ def test_a_render_border_leaves_views_whole(scene, views, seen, tmp_path, crop):
 
 def kinds(scene):
     """The marks of our nodes at the top level, in the order in which Blender renders their scenes."""
-    return [node.scene.get("afterlight") for node in scene.compositing_node_group.nodes
+    return [node.scene.afterlight.role.lower() for node in scene.compositing_node_group.nodes
             if node.get("afterlight") in {"view", "light"}]
 
 
@@ -186,7 +186,7 @@ def test_a_copied_scene_gets_views_of_its_own(scene, wiring, views, how, kind):
     copy.afterlight.enabled = False
     assert not wiring.faults(scene)
     scene.afterlight.enabled = False
-    assert not [each for each in bpy.data.scenes if "afterlight" in each]
+    assert not [each for each in bpy.data.scenes if each.afterlight.role]
     assert not [each for each in bpy.data.cameras if each.name.startswith(".Afterlight")]
 
 

@@ -6,7 +6,7 @@
     light.Indirect Glossy -----> B
 """
 
-from .nodes import (A, B, GLOSSY_PASS, MARK, RESULT, new_node, role, shows, shows_picture, socket, source, summing, takes_light)
+from .nodes import (A, B, GLOSSY_PASS, RESULT, new_node, role, shows, shows_picture, socket, source, summing, takes_light)
 
 
 def splice_gloss(tree, scene, helper):
@@ -14,7 +14,7 @@ def splice_gloss(tree, scene, helper):
     for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
         given = next((link.from_socket for link in socket(add.inputs, B).links), None)
         picture = source(add, A)
-        light = next((node for node in tree.nodes if shows(node, helper) and node.layer == picture.layer), None)
+        light = next((node for node in tree.nodes if shows(node, helper) and role(node) == "light" and node.layer == picture.layer), None)
         if given is None or light is None:
             continue
         gloss = given.node
@@ -75,5 +75,5 @@ def unsplice_denoise(tree, helper):
 
 def lacks_denoise(tree, scene):
     """Whether a node that adds light to the picture of `scene` adds some that went through no Denoise node."""
-    return any(link.from_node.get(MARK) == "light" for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)
+    return any(role(link.from_node) == "light" for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)
                for link in takes_light(node).links)

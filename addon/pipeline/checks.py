@@ -7,7 +7,7 @@ import bpy
 
 from .. import settings
 from ..translations import say
-from . import cures, relight, wiring
+from . import cures, relight, rendering, roles, wiring
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,14 @@ class Finding:
 
 def findings(scene):
     """Everything wrong with `scene`, what matters most first. Reads the scene, changes nothing."""
-    if wiring.is_helper(scene):
-        lit = wiring.source(scene)
+    if roles.is_helper(scene):
+        lit = roles.source(scene)
         if lit is None:
-            return [Finding(say("This scene served to light another, which is gone"))]
+            return [Finding(say("This scene served to light another, or is a copy of one that does. Nothing needs it: it can be deleted"))]
         return [Finding(say('This scene only serves to light "{}". Render that one', lit.name), "SHOW_LIT")]
+    if rendering.is_postponed(scene):
+        return [Finding(say("Indirect Light was ticked, or a setting that changes its nodes was changed, in the middle of a render: it "
+                            "takes effect with the next one. Scripts should do that before the render begins"))]
     found = [*_of_engine(scene), *_of_camera(scene), *_of_layers(scene)]
     if counts_twice(scene):
         found.append(Finding(say("EEVEE's ray tracing already adds bounced light: ours would count it twice"),

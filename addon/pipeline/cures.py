@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import wiring
+from . import roles, wiring
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def _no_probes(context):
 
 
 def _show_lit(context):
-    context.window.scene = wiring.source(context.scene)
+    context.window.scene = roles.source(context.scene)
 
 
 def _render_layers(context):

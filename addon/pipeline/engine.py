@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, history, passes, relight, roughness, status, still, turns, views, wiring, world
+from . import checks, history, passes, relight, roles, roughness, status, still, turns, views, wiring, world
 from .nodes import GLOSSY_PASS, PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -38,6 +38,7 @@ class Shot:
     settings: light.Settings = None
     goes_on: bool = False            # whether frames of an animation are averaged
     problem: str = ""
+    unticked: bool = False           # by a script, since the render began
     shines: bool = False             # whether the light off glossy surfaces is wanted
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
@@ -59,20 +60,20 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
     file = ""  # the saved passes of the frame, between its first view layer and its last
 
     def update_render_passes(self, scene, layer):
-        if wiring.is_helper(scene):
-            self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
-            lit = wiring.source(scene)
-            if lit is not None and wiring.wants_gloss(lit):
-                self.register_pass(scene, layer, GLOSSY_PASS, 3, "RGB", "COLOR")
-        else:
+        if relight.is_replayed(scene):
             relight.register_passes(self, scene, layer)
+            return
+        self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
+        # Asked by what the file says, since Blender asks while it is loaded: a pass that is not offered then loses its links.
+        if any(lit.afterlight.helper == scene and wiring.wants_gloss(lit) for lit in bpy.data.scenes):
+            self.register_pass(scene, layer, GLOSSY_PASS, 3, "RGB", "COLOR")
 
     def update(self, data, depsgraph):
         """Look at the scene: Blender holds the interface off while this runs, so it is short."""
         before, self.shot = self.shot, None
         if self.idle or relight.is_replayed(depsgraph.scene):
             return
-        source = wiring.source(depsgraph.scene)
+        source = roles.source(depsgraph.scene)
         if source is None:
             self._fail(depsgraph.scene, say("This engine works for Afterlight's helper scenes only. Set Render Engine "
                                             "to EEVEE and tick Indirect Light"))
@@ -81,6 +82,9 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         self.shot = shot = Shot(source, depsgraph.view_layer.name, passes.window(source)[0], again, views.wanted(source))
         if before and (self.file or again):  # another view layer of the same frame
             shot.seconds = before.seconds
+        if not source.afterlight.enabled:
+            shot.unticked = True
+            return
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
         if not shot.problem:
             frame = again.frame if again else source.frame_current
@@ -98,6 +102,10 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             return
         pictures = {}
         try:
+            if shot.unticked:
+                self._warn(shot.scene, say("Indirect Light was unticked in the middle of a render: the frames from {} on are plain",
+                                           shot.scene.frame_current))
+                raise light.Cancelled
             if shot.problem:
                 raise Problem("{}", shot.problem)
             with turns.until(self.test_break):

@@ -4,10 +4,11 @@
 import bpy
 
 
-def listen(handlers):
-    """Have Blender call functions: (name of one of its lists, function) each."""
+def listen(handlers, first=False):
+    """Have Blender call functions: (name of one of its lists, function) each. first: before those of everybody else."""
     for event, handler in handlers:
-        getattr(bpy.app.handlers, event).append(handler)
+        called = getattr(bpy.app.handlers, event)
+        called.insert(0 if first else len(called), handler)
 
 
 def ignore(handlers):

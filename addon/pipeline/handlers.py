@@ -4,29 +4,41 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, events, history, leftovers, nodes, passes, relight, status, still, turns, views, wiring, world
+from . import (checks, events, history, leftovers, nodes, passes, relight, rendering, roles, status, still, turns, views, wiring,
+               world)
 from .engine import AfterlightEngine
 
 
 def _lit_scenes():
-    return [scene for scene in bpy.data.scenes if scene.afterlight.enabled and scene.library is None]
+    return [scene for scene in bpy.data.scenes if scene.afterlight.enabled and scene.library is None and not roles.is_helper(scene)]
 
 
 @persistent
-def follow_edits(_scene, depsgraph):
+def follow_edits(scene, depsgraph):
     """A scene, view layer or node tree was edited, copied or renamed."""
-    if bpy.app.is_job_running("RENDER") or depsgraph.mode == "RENDER":
+    if bpy.app.is_job_running("RENDER") or depsgraph.mode == "RENDER" or rendering.is_locked():
         return
     if depsgraph.id_type_updated("SCENE") or depsgraph.id_type_updated("NODETREE"):
-        follow_all()
+        _follow_all(busy=(scene, depsgraph.scene))
 
 
 @persistent
 def follow_all(*_):
-    """A file was loaded, or a step undone."""
+    """A step was undone."""
+    _follow_all()
+
+
+@persistent
+def after_load(*_):
+    """A file was loaded."""
+    rendering.reset()
+    _follow_all()
+
+
+def _follow_all(busy=()):
     for scene in _lit_scenes():
         wiring.follow(scene)
-    wiring.clean_up()
+    wiring.clean_up(busy)
     relight.forget_deleted()
 
 
@@ -35,6 +47,7 @@ def before_render(scene, *_):
     """Say what will keep the light out even where our engine is never called to say it.
 
     Without a window nothing has followed the edits of a script, and nobody can press Repair: it is done here."""
+    rendering.begin()
     if scene.afterlight.enabled:
         turns.surely(lambda: _begin(scene))  # in a window Blender calls this in the render's thread
 
@@ -59,9 +72,24 @@ def _begin(scene):
 
 
 @persistent
+def before_frame(*_):
+    """Of a render, or of an animation that is played."""
+    rendering.lock()
+
+
+@persistent
 def after_render(*_):
     """Complete or cancelled."""
     turns.surely(_end)
+    waited = rendering.end()
+    if waited:
+        turns.after_render(lambda: _catch_up(waited))
+
+
+def _catch_up(waited):
+    """Set up, or clear, the scenes with these session_uids, which had to wait for the end of a render."""
+    for scene in [scene for scene in bpy.data.scenes if scene.session_uid in waited and scene.library is None]:
+        (wiring.connect if scene.afterlight.enabled else wiring.disconnect)(scene)
 
 
 def _end():
@@ -98,12 +126,14 @@ def _ensure_render_result(helper):
 
 _muted = []  # names of trees and nodes
 
-HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", follow_all), ("undo_post", follow_all),
+HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", after_load), ("undo_post", follow_all),
             ("redo_post", follow_all), ("render_init", before_render),
             ("render_complete", after_render), ("render_cancel", after_render))
+FIRST = ("frame_change_pre", before_frame), ("render_pre", before_frame)
 
 
 def register():
+    events.listen(FIRST, first=True)
     events.listen(HANDLERS)
     status.register()
     leftovers.register()
@@ -112,4 +142,5 @@ def register():
 def unregister():
     leftovers.unregister()
     status.unregister()
-    events.ignore(HANDLERS)
+    events.ignore((*HANDLERS, *FIRST))
+    rendering.reset()

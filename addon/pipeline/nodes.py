@@ -7,11 +7,16 @@
 
 What may come between the light and B is in between.py.
 
-Nodes of ours carry the custom property MARK with their role. All that is known is read off the nodes themselves, so
-what a user moves, renames or deletes is never restored from a record that has gone stale.
+Nodes of ours carry the custom property MARK with their role, and are of its type. All that is known is read off the nodes
+themselves, so what a user moves, renames or deletes is never restored from a record that has gone stale.
 """
 
-MARK = "afterlight"
+from .roles import MARK, is_helper
+
+MUTED = "afterlight_muted"  # custom property of light nodes that we muted because their picture is
+KINDS = {"add": {"ShaderNodeMix"}, "gloss": {"ShaderNodeMix"}, "denoise": {"CompositorNodeDenoise"},
+         "light": {"CompositorNodeRLayers"}, "request": {"CompositorNodeRLayers"}, "view": {"CompositorNodeRLayers"},
+         "plain": {"CompositorNodeRLayers", "NodeGroupOutput"}}
 PASS, GLOSSY_PASS = "Indirect", "Indirect Glossy"
 A, B, RESULT = "A_Color", "B_Color", "Result_Color"
 
@@ -33,8 +38,14 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "gloss", "denoise", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
-    return node.get(MARK)
+    """"add", "light", "gloss", "denoise", "view", "request", "plain" (an ordinary node in a tree we made), or None for the user's own:
+    a mark on a node that can't have that role is not ours."""
+    kind = node.get(MARK)
+    if not isinstance(kind, str) or node.bl_idname not in KINDS.get(kind, ()):
+        return None
+    if kind in {"light", "request", "view"} and node.scene is not None and not is_helper(node.scene):
+        return None
+    return kind
 
 
 def shows(node, scene):
@@ -44,7 +55,24 @@ def shows(node, scene):
 
 def pictures(tree, scene):
     """The Render Layers nodes that bring the plain picture of `scene` into the tree or its groups."""
-    return [node for node in all_nodes(tree) if shows(node, scene) and role(node) != "light"]
+    return [node for node in all_nodes(tree) if shows(node, scene)]
+
+
+def uses_light(tree, scene, helper):
+    """Whether the tree or its groups use the image of `scene`, or its light alone."""
+    return any(node.outputs[name].is_linked for node in all_nodes(tree) if node.bl_idname == "CompositorNodeRLayers"
+               for name, shown in (("Image", scene), (PASS, helper)) if node.scene == shown and name in node.outputs)
+
+
+def request(tree, scene, helper):
+    """Have Blender render `helper`: it looks for scenes only among the nodes of the top level, not in groups."""
+    others = [node for node in tree.nodes if shows(node, helper) and role(node) != "request"]
+    for node in [node for node in tree.nodes if role(node) == "request" and others]:
+        tree.nodes.remove(node)
+    found = pictures(tree, scene)
+    if found and not any(shows(node, helper) for node in tree.nodes):
+        node = light_node(tree, helper, found[0].layer, "request")
+        node.location = (-400, -400)
 
 
 def used_passes(scene, layer):
@@ -65,7 +93,7 @@ def goes_dark(node):
 def lost_image(tree, scene, helper):
     """View layers whose adding node is gone together with the links it had: nobody uses their image any more."""
     found = []
-    for light in [node for node in tree.nodes if shows(node, helper) and _is_idle(node)]:
+    for light in [node for node in tree.nodes if shows(node, helper) and role(node) == "light" and _is_idle(node)]:
         images = [picture.outputs["Image"] for picture in tree.nodes if _same_layer(picture, light, scene)]
         if images and not any(image.is_linked for image in images):
             found.append(light.layer)
@@ -95,12 +123,12 @@ def splice(tree, picture, helper):
 
 def unsplice(tree, scene, helper):
     """Take out what splice() put in for `scene`, and give its users the plain image again."""
-    lights = [node for node in tree.nodes if role(node) == "light" and node.scene in (helper, None)]
+    lights = [node for node in tree.nodes if role(node) in {"light", "request"} and node.scene in (helper, None)]
     for add in [node for node in tree.nodes if role(node) == "add"]:
         light, picture = source(add, B), source(add, A)
         if (light in lights) if light else (picture is None or shows(picture, scene)):
-            plain = next((link.from_socket for link in socket(add.inputs, A).links), None)
-            users = [(link.to_socket, link.is_muted) for link in socket(add.outputs, RESULT).links]
+            plain, cut = next(((link.from_socket, link.is_muted) for link in socket(add.inputs, A).links), (None, False))
+            users = [(link.to_socket, link.is_muted or cut) for link in socket(add.outputs, RESULT).links]
             tree.nodes.remove(add)
             for user, is_muted in users if plain else ():
                 tree.links.new(plain, user).is_muted = is_muted
@@ -120,9 +148,9 @@ def light_of(add):
     return source(node, "Image") if node and role(node) == "denoise" else node
 
 
-def light_node(tree, helper, layer):
+def light_node(tree, helper, layer, kind="light"):
     """A Render Layers node that shows the indirect light of one view layer."""
-    light = new_node(tree, "CompositorNodeRLayers", "light")
+    light = new_node(tree, "CompositorNodeRLayers", kind)
     light.label = "Afterlight: Indirect Light"
     light.scene, light.layer = helper, layer
     return light
@@ -149,8 +177,9 @@ def move_behind(tree, late, early):
 
 def _remake(tree, old):
     new = new_node(tree, old.bl_idname, role(old) or "")
-    if role(old) is None:
-        del new[MARK]
+    del new[MARK]
+    for name in old.keys():
+        new[name] = old[name]
     new.scene, new.layer = old.scene, old.layer
     for name in ("parent", "location", "width", "label", "hide", "mute", "use_custom_color", "color", "select"):
         setattr(new, name, getattr(old, name))
@@ -178,7 +207,8 @@ def picture_node(tree, scene):
 def retarget(tree, scene, old, helper):
     """Make our light nodes show `helper` instead of `old`, and the view layer that the picture beside them shows."""
     for node in tree.nodes:
-        if role(node) == "light" and node.scene in (old, None) and node.scene != helper:
+        if node.get(MARK) in {"light", "request"} and node.bl_idname == "CompositorNodeRLayers" and (
+                node.scene in (old, None) and node.scene not in (scene, helper)):
             layer = node.layer
             node.scene = helper
             if layer in helper.view_layers:
@@ -188,6 +218,26 @@ def retarget(tree, scene, old, helper):
         if light and picture and role(light) == "light" and light.scene == helper and shows(picture, scene):
             if light.layer != picture.layer:
                 light.layer = picture.layer
+
+
+def follow_mutes(tree, scene):
+    """Where a picture of `scene` is muted, by its node or by its link, mute its light as well: no light without its picture. Whoever
+    used the picture then gets what it would get without us, the value of its own socket."""
+    for node in tree.nodes:
+        for identifier in {"add": (B,), "gloss": (A, B), "denoise": ("Image",)}.get(role(node), ()):
+            assign(socket(node.inputs, identifier), "default_value", (0.0, 0.0, 0.0, 0.0 if identifier == A else 1.0))
+    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
+        link = socket(add.inputs, A).links[0]
+        users = [user.to_socket for user in socket(add.outputs, RESULT).links]
+        assign(link.to_socket, "default_value", _as_color(users[0]) if users else (0.0, 0.0, 0.0, 0.0))
+        light, is_muted = light_of(add), link.is_muted or link.from_node.mute
+        if light is None or role(light) != "light":
+            continue
+        if is_muted and not light.mute:
+            light.mute = light[MUTED] = True
+        elif not is_muted and MUTED in light:
+            light.mute = False
+            del light[MUTED]
 
 
 def source(node, identifier):
@@ -206,16 +256,24 @@ def assign(data, name, value):
         setattr(data, name, value)
 
 
+def _as_color(socket):
+    """The value that an input has where nothing is linked to it, as a colour."""
+    value = getattr(socket, "default_value", 0.0)
+    channels = tuple(value) if hasattr(value, "__len__") and not isinstance(value, str) else (value,) * 3
+    return (*channels[:3], channels[3] if len(channels) > 3 else 1.0) if len(channels) > 2 else (0.0, 0.0, 0.0, 0.0)
+
+
 def _light_for(tree, picture, helper):
     """A light node for the layer of `picture`: one that lost its adding node, or a new one."""
-    idle = (node for node in tree.nodes if shows(node, helper) and node.layer == picture.layer
+    idle = (node for node in tree.nodes if shows(node, helper) and role(node) == "light" and node.layer == picture.layer
             and _is_idle(node))
     return next(idle, None) or light_node(tree, helper, picture.layer)
 
 
 def _is_idle(light):
     """Whether nothing uses the light of one of our Render Layers nodes, or only nodes of ours that nothing uses."""
-    return not any(_is_used(link.to_node) for link in light.outputs[PASS].links)
+    output = light.outputs.get(PASS)  # which is missing where Blender has no such engine
+    return output is None or not any(_is_used(link.to_node) for link in output.links)
 
 
 def _is_used(node):

@@ -14,7 +14,7 @@ from bpy.app.handlers import persistent
 
 from .. import light
 from ..translations import say
-from . import events, passes, wiring
+from . import events, passes, roles
 from .status import Problem
 from .wiring import ENGINE
 
@@ -110,7 +110,7 @@ def exchange(scene):
 def restore(*_):
     """Give every scene its own engine again. A render that goes on keeps the one that it began with."""
     for scene in bpy.data.scenes:
-        if scene.render.engine == ENGINE and not wiring.is_helper(scene):
+        if scene.render.engine == ENGINE and not roles.is_helper(scene):
             scene.render.engine = EEVEE
 
 

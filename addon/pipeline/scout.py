@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import light
 from ..translations import say
-from . import checks, lenses, passes, picture, placement, rays, relight, status, turns, views, wiring
+from . import checks, lenses, passes, picture, placement, rays, relight, roles, status, turns, views
 from .status import Problem
 
 
@@ -21,8 +21,8 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         """Pose the views, or leave them out. There is no picture."""
-        scene = wiring.source(depsgraph.scene)
-        if scene is None or not views.is_rendered(scene):
+        scene = roles.source(depsgraph.scene)
+        if scene is None or not views.is_rendered(scene) or not scene.afterlight.enabled:
             return
         start = time.perf_counter()
         try:
@@ -102,7 +102,8 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         half, most, known = lenses.HALF_FIELD, scene.afterlight.view_count, views.placed(scene)
         old = known.poses if known else []
         shares = placement.covered(light, seen, cast, half, old)
-        if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL:
+        sees_nothing_new = old and shares[-1] <= shares[0]
+        if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL or sees_nothing_new:
             more, more_seen = look(placement.CHOOSING_PATHS)
             poses = placement.place(more, more_seen, cast, half, most, rng, old) if more else []
             shares = placement.covered(light, seen, cast, half, poses)

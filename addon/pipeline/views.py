@@ -17,13 +17,14 @@ import numpy as np
 
 from .. import light
 from ..translations import say
-from . import lenses, nodes, passes, placement, roughness, still
-from .nodes import MARK
+from . import lenses, nodes, passes, placement, roles, roughness, still
+from .roles import SCOUT, VIEW
 from .status import Problem
 
 SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
 SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
 MOST = 9
+FARTHEST = 1e9             # metres from the world's origin that a pose may be
 PLACED = "placed"          # custom property of the scout's scene
 SAMPLES = 1                # EEVEE's; the pixels are averaged down afterwards
 
@@ -49,13 +50,12 @@ def wanted(scene):
 
 def scout(scene):
     """The scene whose engine places the views of `scene`, or None."""
-    held = [each.scene for each in scene.afterlight.view_scenes]
-    return held[0] if held else None
+    return next((each for each in _own(scene) if each.afterlight.role == SCOUT), None)
 
 
 def scenes(scene):
     """The scenes through which EEVEE renders the views of `scene`, in their order."""
-    return [each.scene for each in scene.afterlight.view_scenes][1:]
+    return [each for each in _own(scene) if each.afterlight.role == VIEW]
 
 
 def connect(scene, tree, helper):
@@ -63,7 +63,7 @@ def connect(scene, tree, helper):
     those of `helper`. Changes nothing that is in place already."""
     strangers = _ensure_scenes(scene)
     mirror(scene)
-    ours = [each.scene for each in scene.afterlight.view_scenes]
+    ours = _own(scene)
     for node in [node for node in tree.nodes if nodes.role(node) == "view"]:
         if node.scene is None or node.scene in strangers:
             tree.nodes.remove(node)
@@ -76,13 +76,13 @@ def connect(scene, tree, helper):
 def disconnect(scene):
     """Take out all that connect() put in."""
     settings = scene.afterlight
-    ours = _own(scene)
+    ours = [*roles.own(scene, SCOUT), *roles.own(scene, VIEW)]
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for node in [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in (*ours, None)]:
             tree.nodes.remove(node)
     settings.view_scenes.clear()
     for each in ours:
-        remove(each)
+        roles.remove(each)
 
 
 def follow(scene):
@@ -111,13 +111,13 @@ def mirror(scene):
         nodes.assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
         nodes.assign(each, "background_set", scene)
         for switch, _ in (roughness.COLOR, roughness.DIRECT):
-            nodes.assign(own, switch, each.get(MARK) == "view" and wiring.wants_gloss(scene))
+            nodes.assign(own, switch, each.afterlight.role == VIEW and wiring.wants_gloss(scene))
 
 
 def faults(scene):
     """Whether something of what connect() makes is missing."""
     ours = _own(scene)
-    if len(ours) != _held(scene) or any(each is None or each.camera is None for each in ours):
+    if len(ours) != _held(scene) or any(each.camera is None or each.camera != roles.camera(each) for each in ours):
         return True
     tree = scene.compositing_node_group
     found = [node.scene for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours] if tree else []
@@ -135,8 +135,8 @@ def reset(*_):
     global _rendered
     _rendered = None
     for each in bpy.data.scenes:
-        if each.get(MARK) in {"view", "scout"} and each.library is None:
-            nodes.assign(each.view_layers[0], "use", each.get(MARK) == "scout")
+        if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.source(each):
+            nodes.assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
 
 
 def is_rendered(scene):
@@ -145,12 +145,9 @@ def is_rendered(scene):
 
 
 def placed(scene):
-    """The placement.Placement that the file holds for `scene`, or None."""
-    stored = scout(scene).get(PLACED)
-    if not stored or len(stored["poses"]) % 16:
-        return None
-    return placement.Placement(list(np.array(stored["poses"], float).reshape(-1, 4, 4)), list(stored["coverage"]),
-                               stored["clearance"])
+    """The placement.Placement that the file holds for `scene`, or None where it holds none that makes sense."""
+    holder = scout(scene)
+    return _read_placed(holder.get(PLACED)) if holder else None
 
 
 def keep_placed(scene, found):
@@ -246,15 +243,25 @@ def unusable(thing):
     return ""
 
 
-def remove(view):
-    """Remove one of these scenes, with its camera."""
-    for camera_object in [each for each in view.collection.objects if each.type == "CAMERA"]:
-        bpy.data.cameras.remove(camera_object.data)  # and the object with it
-    bpy.data.scenes.remove(view)
+def _read_placed(stored):
+    """placement.Placement of what a file holds, None where that is no placement: anybody may have written it."""
+    try:
+        poses = np.array(stored["poses"], float).reshape(-1, 4, 4)
+        coverage, clearance = np.array(stored["coverage"], float), float(stored["clearance"])
+    except (TypeError, KeyError, ValueError, AttributeError):
+        return None
+    turns = poses[:, :3, :3].clip(-2, 2)
+    is_sound = (len(poses) <= MOST and len(coverage) == len(poses) + 1 and np.isfinite(coverage).all()
+                and 0 < clearance < FARTHEST and (np.abs(poses[:, :3, 3]) < FARTHEST).all()
+                and np.allclose(turns @ turns.transpose(0, 2, 1), np.eye(3), atol=1e-3)
+                and np.array_equal(poses[:, 3], np.tile((0.0, 0, 0, 1), (len(poses), 1))))
+    return placement.Placement(list(poses), coverage.tolist(), clearance) if is_sound else None
 
 
 def _own(scene):
-    return [each.scene for each in scene.afterlight.view_scenes if each.scene is not None]
+    """The scenes of `scene` in their order: that of the scout, and those of the views."""
+    return [each.scene for each in scene.afterlight.view_scenes if each.scene is not None and roles.source(each.scene) == scene
+            and each.scene.afterlight.role in {SCOUT, VIEW}]
 
 
 def _held(scene):
@@ -264,45 +271,40 @@ def _held(scene):
 
 
 def _ensure_scenes(scene):
-    """Returns the scenes that are no longer, or never were, this scene's: those of which it is a copy."""
-    from . import wiring
-    held = scene.afterlight.view_scenes
-    strangers = [each.scene for each in held if each.scene is not None and wiring.source(each.scene) != scene]
-    if strangers or any(each.scene is None for each in held):
-        for each in set(_own(scene)) - set(strangers):
-            remove(each)
+    """Make the scenes that are missing, and remove those that are not needed any more. Returns the scenes that `scene` names and that
+    are not its own: those of which it is a copy."""
+    held, views = scene.afterlight.view_scenes, max(_held(scene) - 1, 0)
+    named = [each.scene for each in held if each.scene is not None]
+    found = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
+    strangers = set(named) - set(found[SCOUT]) - set(found[VIEW])
+    for role, count in ((SCOUT, 1 if views else 0), (VIEW, views)):
+        for each in found[role][count:]:
+            roles.remove(each)
+        del found[role][count:]
+        made = [_new(scene, role, len(found[role]) + number) for number in range(count - len(found[role]))]
+        found[role] += made
+    ours = [*found[SCOUT], *found[VIEW]]
+    if named != ours or len(held) != len(ours):
         held.clear()
-    while len(held) > _held(scene):
-        remove(held[-1].scene)
-        held.remove(len(held) - 1)
-    while len(held) < _held(scene):
-        made = _new(scene, len(held))
-        held.add().scene = made  # before it is evaluated: what is nobody's is cleaned up
-        # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated. It has no
-        # background yet: a whole scene evaluated here would stay in memory.
-        made.view_layers[0].update()
-        made.view_layers[0].use = made.get(MARK) == "scout"
-    for each in _own(scene):
-        if each.camera is None:
-            _give_camera(each)
+        for each in ours:
+            held.add().scene = each
+    for each in ours:
+        roles.give_camera(each)
     return strangers
 
 
-def _new(scene, index):
-    made = bpy.data.scenes.new(_name(scene, index))
-    made[MARK] = "view" if index else "scout"
-    _give_camera(made)
-    made.render.engine = "BLENDER_EEVEE" if index else SCOUT_ENGINE
-    made.render.resolution_x = made.render.resolution_y = 4  # it is always rendered at the lit scene's
+def _new(scene, role, index):
+    is_view = role == VIEW
+    made = roles.new(scene, role, _name(scene, index + 1 if is_view else 0), "BLENDER_EEVEE" if is_view else SCOUT_ENGINE)
+    roles.give_camera(made)
     layer = made.view_layers[0]
     for _, switch, _, _ in passes.PASSES:
-        setattr(layer, switch, bool(index))
+        setattr(layer, switch, is_view)
+    # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated. It has no background yet: a
+    # whole scene evaluated here would stay in memory.
+    layer.update()
+    layer.use = not is_view
     return made
-
-
-def _give_camera(view):
-    view.camera = bpy.data.objects.new(view.name, bpy.data.cameras.new(view.name))
-    view.collection.objects.link(view.camera)
 
 
 def _name(scene, index):

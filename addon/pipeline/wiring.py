@@ -4,31 +4,30 @@
 import bpy
 
 from ..translations import say
-from . import between, nodes, roughness, views, world
-from .nodes import MARK
-from .passes import MOTION, PASSES, needed
+from . import between, layer_passes, nodes, own_tree, rendering, roles, views, world
+from .roles import HELPER, is_helper, source
 
 ENGINE = "AFTERLIGHT"
 HELPER_NAME = ".Afterlight ({})"  # Blender leaves names with a leading dot out of its menus
-TREE_NAME = "Afterlight Compositing"
 
 
 def connect(scene):
     """Set up all that a lit render of `scene` needs. Does nothing to what is in place already."""
+    if rendering.postpones(scene):
+        return
+    adopt(scene)
     settings = scene.afterlight
     old, helper = settings.helper, _own_helper(scene)
     _mirror_layers(scene, helper)
-    tree = _tree_in_use(scene)
+    tree = own_tree.in_use(scene)
     views.connect(scene, tree, helper)
     for group in nodes.trees(tree):
         if _is_unshared(group, scene):
             nodes.retarget(group, scene, old, helper)
+    _offer_passes(helper)
     for picture in nodes.pictures(tree, scene):
         nodes.splice(picture.id_data, picture, helper)
-    if nodes.pictures(tree, scene) and not any(nodes.shows(node, helper) for node in tree.nodes):
-        # Blender looks for scenes to render only among the nodes of the top level, not in groups.
-        nodes.light_node(tree, helper, nodes.pictures(tree, scene)[0].layer).location = (-400, -400)
-    _offer_passes(helper)
+    nodes.request(tree, scene, helper)
     for group in nodes.trees(tree):
         if wants_gloss(scene):
             between.splice_gloss(group, scene, helper)
@@ -65,69 +64,69 @@ def wants_denoise(scene):
 def follow(scene):
     """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
     the scene renamed or copied. Puts no node where the user may have taken one away."""
-    helper = scene.afterlight.helper
-    if helper is not None and source(helper) != scene:
-        connect(scene)  # a copied scene: it still names the helper of its original
+    if rendering.is_locked():
         return
+    helper = scene.afterlight.helper
     if helper is None:
         return  # deleted by hand: checks.py says so, with a button
+    if source(helper) != scene:
+        connect(scene)  # a copied scene: it still names the helper of its original
+        return
     _mirror_layers(scene, helper)
     world.mirror(scene, helper)
     views.follow(scene)
     for group in nodes.trees(scene.compositing_node_group):
         nodes.retarget(group, scene, helper, helper)
+        nodes.follow_mutes(group, scene)
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
         if layer.name in lit:
-            _switch_passes(scene, layer, _passes_of(scene, layer))
+            layer_passes.switch(scene, layer, layer_passes.wanted(scene, layer))
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
         helper.name = _helper_name(scene)
 
 
 def disconnect(scene):
     """Take out all that connect() put in and restore what was there; keep what the user has built on it."""
-    settings, helper = scene.afterlight, scene.afterlight.helper
+    if rendering.postpones(scene):
+        return
+    adopt(scene)
+    settings, helpers = scene.afterlight, roles.own(scene, HELPER)
+    helper = helpers[0] if helpers else None
     views.disconnect(scene)
-    is_ours = helper is not None and source(helper) == scene
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for group in nodes.trees(tree):
             between.unsplice_denoise(group, helper)
             between.unsplice_gloss(group, helper)
             nodes.unsplice(group, scene, helper)
-    _restore_tree(scene)
+    own_tree.restore(scene)
     for layer in scene.view_layers:
-        _switch_passes(scene, layer, ())
+        layer_passes.switch(scene, layer, ())
     settings.helper = None
-    if is_ours:
-        _remove_helper(helper)
+    for each in helpers:
+        roles.remove(each)
 
 
-def is_helper(scene):
-    """Whether the scene is one that connect() made."""
-    return scene.get(MARK) in {"helper", "scout", "view"}
+def adopt(scene):
+    """Take over what 0.1.0 to 0.3.0 left in the file for `scene`, which marked it otherwise."""
+    roles.adopt(scene)
+    own_tree.adopt(scene)
+    layer_passes.adopt(scene)
 
 
-def source(helper):
-    """The scene whose light `helper` gathers, or None. A copied scene names the helper of its original until follow()
-    has seen it; the original is older."""
-    return min((scene for scene in bpy.data.scenes if scene.afterlight.helper == helper
-                or any(view.scene == helper for view in scene.afterlight.view_scenes)),
-               key=lambda scene: scene.session_uid, default=None)
-
-
-def clean_up():
-    """Remove helper scenes whose own scene has been deleted."""
-    for scene in [scene for scene in bpy.data.scenes if is_helper(scene) and not scene.library]:
-        if source(scene) is None:
-            _remove_helper(scene)
+def clean_up(busy=()):
+    """Remove our scenes whose own scene has been deleted. busy: scenes that Blender is looking at, which stay until another time."""
+    if not rendering.is_locked():
+        shown = [window.scene for manager in bpy.data.window_managers for window in manager.windows]
+        roles.remove_orphans((*busy, *shown))
 
 
 def faults(scene):
     """What is missing from the wiring of an enabled scene, as {sentence for people: what mends it in cures.py, or ""};
     empty where all is in place."""
     helper, tree = scene.afterlight.helper, scene.compositing_node_group
-    if helper is None or source(helper) != scene or helper.render.engine != ENGINE:
+    if helper is None or source(helper) != scene or helper.render.engine != ENGINE or roles.camera(helper) is None:
         return {say("Afterlight's helper scene was deleted or changed"): "REPAIR"}
     if tree is None or not scene.render.use_compositing:
         return {say("Compositing is switched off, so the light can't be added to the picture"): "REPAIR"}
@@ -137,6 +136,9 @@ def faults(scene):
     if not pictures:
         return {say('The compositor has no Render Layers node of "{}", so there is no picture to add light to. Add one '
                     "and link its Image", scene.name): ""}
+    pictures = [picture for picture in pictures if not picture.mute]
+    if not pictures:
+        return {say('All Render Layers nodes of "{}" are muted, so there is no picture to add light to. Unmute one', scene.name): ""}
     if not any(picture.id_data == tree for picture in pictures):
         return {say("All Render Layers nodes of this scene are inside node groups, and then Blender does not render "
                     "the scene. Add one at the top level of the compositor; it need not be linked"): "RENDER_LAYERS"}
@@ -145,14 +147,18 @@ def faults(scene):
     if lost:  # where links went is known in our own tree only
         found[say("The node that adds the light to {} was deleted, and the links of the image with it. Link the Image "
                   "of its Render Layers node again", ", ".join(lost))] = (
-                      "REPAIR" if tree == scene.afterlight.own_tree else "")
+                      "REPAIR" if own_tree.is_ours(scene, tree) else "")
     dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
     if dark:
         found[say("The compositor uses {} without the indirect light: a node of Afterlight was deleted, or a Render "
                   "Layers node is new", ", ".join(dark))] = "REPAIR"
     if not any(nodes.shows(node, helper) for node in tree.nodes):
         found[say("Afterlight's Render Layers node was deleted from the compositor")] = "REPAIR"
-    elif any(nodes.role(node) == "add" and not nodes.source(node, nodes.B) for node in nodes.all_nodes(tree)):
+    elif not lost and not nodes.uses_light(tree, scene, helper) and not own_tree.is_untouched(scene, tree):
+        found[say('The compositor uses the Image of no Render Layers node of "{}", so the light is added to nothing. Link the Image '
+                  "of one, or the output Indirect of Afterlight's", scene.name)] = ""
+    elif any(nodes.role(node) == "add" and nodes.shows_picture(node, scene) and not nodes.source(node, nodes.B)
+             for node in nodes.all_nodes(tree)):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if views.faults(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = "REPAIR"
@@ -160,7 +166,7 @@ def faults(scene):
         found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
     if wants_denoise(scene) and any(between.lacks_denoise(group, scene) for group in nodes.trees(tree)):
         found[say("The Denoise node of the indirect light was deleted")] = "REPAIR"
-    if any(mirror.use and not all(getattr(layer, switch) for switch, _ in _passes_of(scene, layer))
+    if any(mirror.use and not all(getattr(layer, switch) for switch, _ in layer_passes.wanted(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
     return found
@@ -173,28 +179,18 @@ def add_picture(scene):
 
 
 def _own_helper(scene):
-    helper = scene.afterlight.helper
-    if helper is None or source(helper) != scene:
-        helper = bpy.data.scenes.new(_helper_name(scene))
-        helper[MARK] = "helper"
-        # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
-        helper.camera = bpy.data.objects.new(helper.name, bpy.data.cameras.new(helper.name))
-        helper.collection.objects.link(helper.camera)
-        helper.render.resolution_x = helper.render.resolution_y = 4  # it is always rendered at its source's
-        helper.eevee.taa_render_samples = 1  # what is rendered in its place where the extension is missing
-        scene.afterlight.helper = helper
+    found = roles.own(scene, HELPER)
+    helper = found[0] if found else roles.new(scene, HELPER, _helper_name(scene), ENGINE)
+    nodes.assign(scene.afterlight, "helper", helper)
+    # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
+    roles.give_camera(helper)
+    helper.eevee.taa_render_samples = 1  # what is rendered in its place where the extension is missing
     helper.render.engine = ENGINE
     return helper
 
 
 def _helper_name(scene):
     return HELPER_NAME.format(scene.name)[:250]
-
-
-def _remove_helper(helper):
-    for camera in [each for each in helper.collection.objects if each.type == "CAMERA"]:
-        bpy.data.cameras.remove(camera.data)  # and the object with it
-    bpy.data.scenes.remove(helper)
 
 
 def _mirror_layers(scene, helper):
@@ -218,90 +214,7 @@ def _is_unshared(tree, scene):
                    for other in bpy.data.scenes if other != scene and other.afterlight.enabled)
 
 
-def _tree_in_use(scene):
-    """The compositor tree to wire: the user's own where it is in use, else one of ours."""
-    settings, render = scene.afterlight, scene.render
-    tree = scene.compositing_node_group
-    if tree is not None and settings.own_tree not in (None, tree) and all(map(nodes.role, tree.nodes)):
-        settings.own_tree = tree  # a copied scene has a copy of the tree we made for its original
-    if tree is not None and (render.use_compositing or tree == settings.own_tree):
-        render.use_compositing = True
-        if tree == settings.own_tree:
-            _link_image(tree)
-        return tree
-    if not render.use_compositing:
-        # A tree that is switched off must not come to life because Afterlight needs the compositor.
-        settings.compositing_was_off, settings.set_aside = True, tree
-        render.use_compositing = True
-    settings.own_tree = scene.compositing_node_group = _new_tree(scene)
-    return settings.own_tree
-
-
-def _new_tree(scene):
-    """The tree that does what Blender does without one: the first view layer's image is the picture."""
-    tree = bpy.data.node_groups.new(TREE_NAME, "CompositorNodeTree")
-    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    picture, output = nodes.picture_node(tree, scene), tree.nodes.new("NodeGroupOutput")
-    picture[MARK] = output[MARK] = "plain"
-    output.location = (600, 0)
-    _link_image(tree)
-    return tree
-
-
-def _link_image(tree):
-    """In a tree that holds nothing but our nodes, link the image to the output where a deleted node left a gap."""
-    if all(map(nodes.role, tree.nodes)):
-        picture = next((node for node in tree.nodes if "Image" in node.outputs and nodes.role(node) == "plain"), None)
-        for output in [node for node in tree.nodes if node.bl_idname == "NodeGroupOutput"]:
-            if picture and not output.inputs[0].is_linked:
-                tree.links.new(picture.outputs["Image"], output.inputs[0])
-
-
-def _restore_tree(scene):
-    settings, own = scene.afterlight, scene.afterlight.own_tree
-    shared = any(other != scene and other.compositing_node_group == own for other in bpy.data.scenes)
-    if own is not None and not shared and all(map(nodes.role, own.nodes)):
-        if scene.compositing_node_group == own:
-            scene.compositing_node_group = settings.set_aside
-            if settings.compositing_was_off:
-                scene.render.use_compositing = False
-        bpy.data.node_groups.remove(own)
-    elif own is not None:  # the user has built on it: from now on it is theirs
-        for node in own.nodes:
-            if nodes.role(node) == "plain":
-                del node[MARK]
-    settings.own_tree = settings.set_aside = None
-    settings.compositing_was_off = False
-
-
 def _offer_passes(helper):
     """Let the Render Layers nodes of `helper` offer the passes that its engine gives now."""
     for layer in helper.view_layers:
         layer.update_render_passes()
-
-
-def _passes_of(scene, layer):
-    """(switch, pass) of all that is read of a view layer."""
-    return [*((switch, name) for _, switch, name, _ in needed(scene.afterlight)),
-            *(roughness.needed(layer) if wants_gloss(scene) else ())]
-
-
-def _switch_passes(scene, layer, wanted):
-    """Switch on what is wanted, (switch, pass) each, and off what we once switched on and is not wanted, but for passes that the
-    user's own nodes have come to use."""
-    ours, wanted = set(layer.get(MARK, ())), {switch for switch, _ in wanted}
-    unwanted = ours - wanted
-    used = nodes.used_passes(scene, layer.name) if unwanted else ()
-    for switch, name in (*((switch, name) for _, switch, name, _ in (*PASSES, MOTION)),
-                         roughness.COLOR, roughness.DIRECT, roughness.MATERIAL):
-        if switch in wanted and not getattr(layer, switch):
-            ours.add(switch)
-            setattr(layer, switch, True)
-        elif switch in unwanted and name not in used:
-            setattr(layer, switch, False)
-    ours -= unwanted
-    if ours != set(layer.get(MARK, ())):
-        if ours:
-            layer[MARK] = sorted(ours)
-        else:
-            del layer[MARK]

@@ -243,8 +243,18 @@ TEXTS = {
         "rendert",
 
     # What is wrong with a scene
-    "This scene served to light another, which is gone":
-        "Diese Szene diente dem Licht einer anderen, die es nicht mehr gibt",
+    "This scene served to light another, or is a copy of one that does. Nothing needs it: it can be deleted":
+        "Diese Szene diente dem Licht einer anderen oder ist die Kopie einer solchen. Nichts braucht sie: sie kann gelöscht werden",
+    "Indirect Light was ticked, or a setting that changes its nodes was changed, in the middle of a render: it takes effect with the "
+    "next one. Scripts should do that before the render begins":
+        "Mitten in einem Rendering wurde indirektes Licht eingeschaltet oder eine Einstellung geändert, die seine Nodes ändert: das "
+        "wirkt ab dem nächsten. Skripte sollten das tun, bevor das Rendern beginnt",
+    "Indirect Light was unticked in the middle of a render: the frames from {} on are plain":
+        "Indirektes Licht wurde mitten in einem Rendering ausgeschaltet: ab Bild {} sind die Bilder ohne Licht",
+    'The compositor uses the Image of no Render Layers node of "{}", so the light is added to nothing. Link the Image of one, or the '
+    "output Indirect of Afterlight's":
+        'Der Compositor nutzt das Bild keines Render-Ebenen-Nodes von "{}", also kommt das Licht in kein Bild. Das Bild von einem '
+        "verbinden oder den Ausgang Indirect desjenigen von Afterlight",
     'This scene only serves to light "{}". Render that one': 'Diese Szene dient nur dem Licht von "{}". Jene rendern',
     "Indirect Light works on EEVEE's passes, and the render engine is {}. Set Render Engine to EEVEE, or untick "
     "Indirect Light":
@@ -289,6 +299,8 @@ TEXTS = {
     "Image":
         'Der Compositor hat keinen Render-Ebenen-Node von "{}", also kein Bild, in das Licht kommen könnte. Einen '
         "hinzufügen und sein Bild verbinden",
+    'All Render Layers nodes of "{}" are muted, so there is no picture to add light to. Unmute one':
+        'Alle Render-Ebenen-Nodes von "{}" sind stumm, also gibt es kein Bild, in das Licht kommen könnte. Einen davon einschalten',
     "All Render Layers nodes of this scene are inside node groups, and then Blender does not render the scene. Add "
     "one at the top level of the compositor; it need not be linked":
         "Alle Render-Ebenen-Nodes dieser Szene sind in Node-Gruppen, und dann rendert Blender die Szene nicht. Auf "

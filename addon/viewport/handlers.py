@@ -8,7 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import light
-from ..pipeline import checks, events, status, wiring
+from ..pipeline import checks, events, roles, status
 from ..translations import say
 from . import changes, screen
 from .further import Further
@@ -47,7 +47,7 @@ def is_lit(scene, space):
     """Whether a viewport shows the light of `scene`: the whole picture, by EEVEE."""
     shading = space.shading
     return (scene.afterlight.enabled and scene.afterlight.use_viewport and scene.render.engine == "BLENDER_EEVEE"
-            and shading.type == "RENDERED" and shading.render_pass == "COMBINED" and not wiring.is_helper(scene) and not problem(scene))
+            and shading.type == "RENDERED" and shading.render_pass == "COMBINED" and not roles.is_helper(scene) and not problem(scene))
 
 
 def _before():

@@ -18,7 +18,7 @@ def placed():
     """[(location, rotation)] of the views, and [(mark, whether rendered at rest)] of their scenes."""
     held = [each.scene for each in bpy.context.scene.afterlight.view_scenes]
     return [[(*view.camera.location, *view.camera.rotation_quaternion) for view in held[1:]],
-            [(view["afterlight"], view.view_layers[0].use) for view in held],
+            [(view.afterlight.role.lower(), view.view_layers[0].use) for view in held],
             len(held[0]["placed"]["poses"]) // 16]
 
 
