@@ -74,12 +74,13 @@ def test_a_copied_helper_scene_is_the_users(with_views, pipeline, how, kind):
     assert [scene.name for scene in bpy.data.scenes if scene not in (copy, with_views)] == []
 
 
-def test_a_copy_outlives_the_lit_scene(with_views):
+def test_a_copy_outlives_the_lit_scene(with_views, tmp_path):
     bpy.context.window.scene = with_views.afterlight.helper
     bpy.ops.scene.new(type="FULL_COPY")
     copy = bpy.context.scene
     bpy.data.scenes.remove(with_views)
     settle()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert [scene for scene in bpy.data.scenes if scene != copy and scene.afterlight.role] == []
 
 

@@ -141,11 +141,16 @@ def test_deleting_the_helper_scene_is_noticed_and_repaired(scene, wiring):
     assert not differences(before, after)
 
 
-def test_deleting_the_scene_takes_its_helper_along(scene):
-    bpy.data.scenes.new("Other")
+@pytest.mark.parametrize("other_ticked", [False, True])
+def test_deleting_the_scene_takes_its_helper_along(scene, tmp_path, other_ticked):
+    """At the latest when the file is saved: while Blender evaluates another scene it can't go without a crash."""
+    other = bpy.data.scenes.new("Other")
     scene.afterlight.enabled = True
+    other.afterlight.enabled = other_ticked
     bpy.data.scenes.remove(scene)
     bpy.context.view_layer.update()
+    other.afterlight.enabled = False
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert not helpers() and not [each for each in bpy.data.cameras if each.name.startswith(".Afterlight")]
 
 

@@ -14,32 +14,41 @@ def _lit_scenes():
 
 
 @persistent
-def follow_edits(scene, depsgraph):
+def follow_edits(_scene, depsgraph):
     """A scene, view layer or node tree was edited, copied or renamed."""
     if bpy.app.is_job_running("RENDER") or depsgraph.mode == "RENDER" or rendering.is_locked():
         return
-    if depsgraph.id_type_updated("SCENE") or depsgraph.id_type_updated("NODETREE"):
-        _follow_all(busy=(scene, depsgraph.scene))
+    if not (depsgraph.id_type_updated("SCENE") or depsgraph.id_type_updated("NODETREE")):
+        return
+    later = bool(roles.orphans())
+    for scene in _lit_scenes():
+        if wiring.needs_rebuilding(scene):
+            later = True
+        else:
+            wiring.follow(scene)
+    # Blender goes on evaluating when we return, and crashes where a scene is gone. Without a window nothing comes after: the
+    # next render, or the next time the file is saved, sees to it.
+    if later and not bpy.app.background and not bpy.app.timers.is_registered(follow_all):
+        bpy.app.timers.register(follow_all, first_interval=0.0)
 
 
 @persistent
 def follow_all(*_):
-    """A step was undone."""
-    _follow_all()
+    """A step was undone, or the file is about to be saved."""
+    if rendering.is_locked():
+        return
+    for scene in _lit_scenes():
+        wiring.follow(scene)
+    for scene in roles.orphans():
+        roles.remove(scene)
+    relight.forget_deleted()
 
 
 @persistent
 def after_load(*_):
     """A file was loaded."""
     rendering.reset()
-    _follow_all()
-
-
-def _follow_all(busy=()):
-    for scene in _lit_scenes():
-        wiring.follow(scene)
-    wiring.clean_up(busy)
-    relight.forget_deleted()
+    follow_all()
 
 
 @persistent
@@ -47,6 +56,8 @@ def before_render(scene, *_):
     """Say what will keep the light out even where our engine is never called to say it.
 
     Without a window nothing has followed the edits of a script, and nobody can press Repair: it is done here."""
+    if bpy.app.background:
+        follow_all()
     rendering.begin()
     if scene.afterlight.enabled:
         turns.surely(lambda: _begin(scene))  # in a window Blender calls this in the render's thread
@@ -127,7 +138,7 @@ def _ensure_render_result(helper):
 _muted = []  # names of trees and nodes
 
 HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", after_load), ("undo_post", follow_all),
-            ("redo_post", follow_all), ("render_init", before_render),
+            ("redo_post", follow_all), ("save_pre", follow_all), ("render_init", before_render),
             ("render_complete", after_render), ("render_cancel", after_render))
 FIRST = ("frame_change_pre", before_frame), ("render_pre", before_frame)
 

@@ -87,12 +87,10 @@ def remove(scene):
     bpy.data.scenes.remove(scene)
 
 
-def remove_orphans(busy):
-    """Remove the scenes that were ours and whose lit scene has been deleted. busy: scenes that Blender looks at right now."""
-    for scene in list(bpy.data.scenes):
-        if (scene.session_uid in _seen and is_helper(scene) and scene.afterlight.serves is None and scene not in busy
-                and scene.library is None):
-            remove(scene)
+def orphans():
+    """The scenes that were ours and whose lit scene has been deleted."""
+    return [scene for scene in bpy.data.scenes if scene.session_uid in _seen and is_helper(scene) and scene.afterlight.serves is None
+            and scene.library is None]
 
 
 def adopt(lit):

@@ -64,10 +64,8 @@ def wants_denoise(scene):
 def follow(scene):
     """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
     the scene renamed or copied. Puts no node where the user may have taken one away."""
-    if rendering.is_locked():
-        return
     helper = scene.afterlight.helper
-    if helper is None:
+    if rendering.is_locked() or helper is None:
         return  # deleted by hand: checks.py says so, with a button
     if source(helper) != scene:
         connect(scene)  # a copied scene: it still names the helper of its original
@@ -115,11 +113,10 @@ def adopt(scene):
     layer_passes.adopt(scene)
 
 
-def clean_up(busy=()):
-    """Remove our scenes whose own scene has been deleted. busy: scenes that Blender is looking at, which stay until another time."""
-    if not rendering.is_locked():
-        shown = [window.scene for manager in bpy.data.window_managers for window in manager.windows]
-        roles.remove_orphans((*busy, *shown))
+def needs_rebuilding(scene):
+    """Whether follow() would add or remove scenes or view layers, which crashes Blender where it evaluates something."""
+    helper = scene.afterlight.helper
+    return helper is not None and (source(helper) != scene or len(helper.view_layers) > len(scene.view_layers))
 
 
 def faults(scene):

@@ -71,6 +71,7 @@ class FileMachine(RuleBasedStateMachine):
 
     def settle(self):
         bpy.context.view_layer.update()
+        self.module.addon.pipeline.handlers.follow_all()  # which a timer does in a window
         bpy.ops.ed.undo_push(message="step")
 
     def scenes(self):
