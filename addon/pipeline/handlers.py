@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import checks, events, history, leftovers, nodes, passes, relight, status, still, turns, views, wiring, world
+from . import checks, events, history, nodes, passes, relight, status, still, temp_files, turns, views, wiring, world
 from .engine import AfterlightEngine
 
 
@@ -53,7 +53,7 @@ def _begin(scene):
     for finding in checks.findings(scene):
         if finding.fatal:
             status.fail(scene, finding.text)
-        print(f"Afterlight: {finding.text}")
+        status.tell(f"Afterlight: {finding.text}")
     if status.message(scene):
         _mute(scene)
 
@@ -106,10 +106,10 @@ HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", follow_all), 
 def register():
     events.listen(HANDLERS)
     status.register()
-    leftovers.register()
+    temp_files.register()
 
 
 def unregister():
-    leftovers.unregister()
+    temp_files.unregister()
     status.unregister()
     events.ignore(HANDLERS)
