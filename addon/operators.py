@@ -164,8 +164,8 @@ class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
 
     def execute(self, context):
         if not _is_preset(self.filepath):
-            self.report({"ERROR"}, say('"{}" does not lie in a folder of Indirect Light presets, and is not run. Choose one from the '
-                                       "panel's list of presets", self.filepath))
+            self.report({"ERROR"}, say('"{}" does not lie in a folder of Indirect Light presets, and is not run. Choose '
+                                       "one from the panel's list of presets", self.filepath))
             return {"CANCELLED"}
         settings = context.scene.afterlight
         before = [(settings, parameter.name, getattr(settings, parameter.name)) for parameter in PARAMETERS]
@@ -202,8 +202,8 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
         except (OSError, UnicodeError) as error:
             if not was_there and (begun := self._file()):
                 Path(begun).unlink(missing_ok=True)
-            self.report({"ERROR"}, say("The preset could not be written ({}). Free some space on the disk of Blender's user "
-                                       "folder, or allow writing there", error))
+            self.report({"ERROR"}, say("The preset could not be written ({}). Free some space on the disk of "
+                                       "Blender's user folder, or allow writing there", error))
             return {"CANCELLED"}
 
     def _file(self):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The end of a process in which a render was not lit: 1 for `blender -b`, nobody's business of ours for a host of Blender's module;
-and no file of the user's goes with it."""
+"""The end of a process in which a render was not lit: exit code 1 of `blender -b`, a host's own where Blender is a module
+of its; and no file of the user's goes."""
 
 import os
 import subprocess

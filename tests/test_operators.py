@@ -140,15 +140,16 @@ def test_no_script_but_a_preset_is_run(scene, presets, tmp_path):
     inside = presets / "inside.py"
     inside.write_text(CHANGES)
     outside = presets / "sub" / ".." / ".." / "other.py"
-    for path in (tmp_path / "other.py", presets / "link.py", presets / "text.txt", outside, presets / "none.py", presets, ""):
+    for path in (tmp_path / "other.py", presets / "link.py", presets / "text.txt", outside, presets / "none.py", presets,
+                 ""):
         with pytest.raises(RuntimeError, match="does not lie in a folder of Indirect Light presets"):
             bpy.ops.afterlight.preset(filepath=str(path))
         assert scene.afterlight.samples == 256
     assert bpy.ops.afterlight.preset(filepath=str(inside)) == {"FINISHED"} and scene.afterlight.samples == 77
 
 
-@pytest.mark.parametrize("error, words", [("raise KeyError('x')", "KeyError: 'x'"), ("def (", "SyntaxError"), ("settings", "NameError"),
-                                          ("raise SystemExit(3)", "SystemExit: 3")])
+@pytest.mark.parametrize("error, words", [("raise KeyError('x')", "KeyError: 'x'"), ("def (", "SyntaxError"),
+                                          ("settings", "NameError"), ("raise SystemExit(3)", "SystemExit: 3")])
 def test_a_preset_with_an_error_changes_nothing(scene, addon, presets, capfd, error, words):
     label = addon.panel.AFTERLIGHT_PT_presets.bl_label
     (presets / "broken.py").write_text(CHANGES + error)

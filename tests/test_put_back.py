@@ -51,8 +51,8 @@ def choose(scene, file_format, **settings):
     return image
 
 
-FORMATS = [("PNG", "16"), ("JPEG", "8"), ("TIFF", "16"), ("TIFF", "8"), ("HDR", "32"), ("DPX", "10"), ("OPEN_EXR", "16"),
-           ("OPEN_EXR", "32"), ("OPEN_EXR_MULTILAYER", "16"), ("FFMPEG", "8")]
+FORMATS = [("PNG", "16"), ("JPEG", "8"), ("TIFF", "16"), ("TIFF", "8"), ("HDR", "32"), ("DPX", "10"),
+           ("OPEN_EXR", "16"), ("OPEN_EXR", "32"), ("OPEN_EXR_MULTILAYER", "16"), ("FFMPEG", "8")]
 
 
 @pytest.mark.parametrize("file_format, depth", FORMATS)
@@ -84,8 +84,8 @@ def test_the_look_the_display_and_stereo(rendered, afterlight, file_format, dept
 
 @pytest.mark.parametrize("file_format", ["PNG", "JPEG"])
 def test_a_colour_space_without_a_use(rendered, afterlight, file_format):
-    """The one setting that is not put back, since Blender warns where it was never chosen: that of linear formats, where
-    neither the format nor the scene asks for it. It is chosen anew with the next format, after a save as without."""
+    """The one setting that is not put back, since Blender warns where it was never chosen: that of linear formats,
+    where neither the format nor the scene asks for it. It is chosen anew with the next format, after a save as without."""
     image = choose(rendered, file_format, color_management="FOLLOW_SCENE")
     linear = image.linear_colorspace_settings
 
@@ -108,8 +108,11 @@ def test_no_warning_of_a_colour_space_that_was_never_chosen(rendered, afterlight
     assert "WARNING" not in "".join(capfd.readouterr())
 
 
-@pytest.mark.parametrize("container, codec", [("MPEG4", "H264"), ("MPEG4", "H265"), ("WEBM", "WEBM"), ("MKV", "FFV1"),
-                                              ("QUICKTIME", "PRORES"), ("AVI", "MPEG4"), ("MPEG1", "MPEG1"), ("OGG", "THEORA")])
+VIDEOS = [("MPEG4", "H264"), ("MPEG4", "H265"), ("WEBM", "WEBM"), ("MKV", "FFV1"), ("QUICKTIME", "PRORES"),
+          ("AVI", "MPEG4"), ("MPEG1", "MPEG1"), ("OGG", "THEORA")]
+
+
+@pytest.mark.parametrize("container, codec", VIDEOS)
 def test_videos(rendered, afterlight, container, codec):
     choose(rendered, "FFMPEG")
     video = rendered.render.ffmpeg

@@ -229,7 +229,8 @@ def test_what_nobody_can_say_is_dead_stays(temp_files, elsewhere, name, lock):
 
 
 def test_leftovers_of_version_0_3_0_stay(temp_files, elsewhere):
-    folder = folder_of_a_dead_blender(elsewhere, "blender_dead", files=(".afterlight.lock", "afterlight_1.exr"), lock=False)
+    files = ".afterlight.lock", "afterlight_1.exr"
+    folder = folder_of_a_dead_blender(elsewhere, "blender_dead", files=files, lock=False)
     temp_files.clear()
     assert len(list(folder.iterdir())) == 2
 

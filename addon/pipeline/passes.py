@@ -36,8 +36,8 @@ def needed(settings):
 
 
 def save(scene):
-    """Write the finished passes of `scene` to a file in our temporary folder and return its path: always the same one, unless the
-    folder changes.
+    """Write the finished passes of `scene` to a file in our temporary folder and return its path: always the same one,
+    unless the folder changes.
 
     Blender hands the pixels of a render to Python in no other way: a multilayer EXR, uncompressed, takes a tenth of
     a second at 1280 x 720. Raises Problem where it can't be written, light.Cancelled where the render is to stop.

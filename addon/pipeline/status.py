@@ -131,7 +131,8 @@ def memory(scene):
 
 
 def tell(text, stream=None):
-    """Print a line on the terminal, or to another stream: with escapes for what its encoding lacks, and nowhere if it is gone."""
+    """Print a line on the terminal, or to another stream: with escapes for what its encoding lacks, and nowhere if it
+    is gone."""
     stream = stream or sys.stdout
     with suppress(Exception):  # other scripts put there what they like, and no render may fail for a line of text
         encoding = getattr(stream, "encoding", None) or "ascii"

@@ -208,8 +208,8 @@ def _clear(within, name):
 
 
 def _new_lock(path):
-    """The descriptor of a new lock that is held, or None where the file system has none: without the file nobody clears the
-    folder."""
+    """The descriptor of a new lock that is held, or None where the file system has no locks: nobody clears a folder
+    without the file."""
     made = os.path.join(path, LOCK if os.name == "nt" else f"{LOCK}.new")
     lock = os.open(made, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
     try:
