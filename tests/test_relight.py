@@ -159,15 +159,27 @@ def test_a_failed_update_leaves_the_engine(scene, tmp_path, afterlight, monkeypa
     assert scene.afterlight.report == ""
 
 
-@pytest.mark.parametrize("first, second", [("A", "A.Normal"), ("A.Normal", "A"), ("A", "A.Normal.X"), ("A.B", "A")])
-def test_view_layers_with_names_like_passes(scene, tmp_path, first, second):
+@pytest.mark.parametrize("others", [("A.Normal", "A.Normal.X"), ("A.B", "A.B.B")])
+def test_view_layers_with_names_like_passes(scene, relight, tmp_path, capfd, others):
     """And a pass of the user's own that is named like the rest of such a name."""
-    scene.view_layers[0].name = first
-    scene.view_layers.new(second)
+    scene.view_layers[0].name = "A"
+    for name in others:
+        scene.view_layers.new(name)
     for layer in scene.view_layers:
+        layer.use_pass_z = layer.use_pass_normal = True
         layer.aovs.add().name = "B"
-    picture = read_rgb(render(scene, tmp_path / "first.exr"))
-    assert np.array_equal(updated(scene, tmp_path / "again.exr"), picture) and scene.afterlight.report == ""
+    first = read(render(scene, tmp_path / "first.exr", "OPEN_EXR_MULTILAYER"))
+    found = relight.kept(scene).layers
+    assert found.keys() == {"A", *others}
+    assert all(dict(passes).keys() >= {"Combined", "Depth", "Normal", "B"} for passes in found.values())
+    capfd.readouterr()
+    assert bpy.ops.afterlight.update() == {"FINISHED"} and scene.afterlight.report == ""
+    assert "Traceback" not in "".join(capfd.readouterr())
+    bpy.data.images["Render Result"].save_render(str(tmp_path / "again.exr"), scene=scene)
+    again = read(tmp_path / "again.exr")
+    assert first.keys() == again.keys() and len(first) > 3 * 10
+    for name, pixels in first.items():
+        np.testing.assert_array_equal(pixels, again[name], name)
 
 
 def gone(relight, monkeypatch):
