@@ -11,7 +11,7 @@ from bpy.types import Operator
 from bpy_extras import anim_utils
 
 from . import help_page
-from .pipeline import roles, wiring
+from .pipeline import put_back, roles, wiring
 from .pipeline.cures import CURES
 from .settings import PARAMETERS
 from .translations import say
@@ -126,6 +126,8 @@ class AFTERLIGHT_OT_help(Operator):
         return {"FINISHED"}
 
 
+# Where Blender looks for presets, in each of its folders for them.
+SUBDIR = "afterlight"
 # Presets that come with the add-on. The numbers are the means of docs/accuracy.md, of light and of frames.
 PRESETS = Path(__file__).resolve().parent / "presets" / "afterlight"
 TOOLTIPS = {
@@ -160,8 +162,22 @@ class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
         path = Path(properties.filepath)
         return TOOLTIPS[path.stem]() if path.parent == PRESETS and path.stem in TOOLTIPS else say(cls.bl_description)
 
-    def execute(self, _context):
-        return bpy.ops.script.execute_preset(filepath=self.filepath, menu_idname="AFTERLIGHT_PT_presets")
+    def execute(self, context):
+        if not _is_preset(self.filepath):
+            self.report({"ERROR"}, say('"{}" does not lie in a folder of Indirect Light presets, and is not run. Choose '
+                                       "one from the panel's list of presets", self.filepath))
+            return {"CANCELLED"}
+        settings = context.scene.afterlight
+        before = [(settings, parameter.name, getattr(settings, parameter.name)) for parameter in PARAMETERS]
+        try:
+            bpy.utils.execfile(self.filepath)
+        except (Exception, SystemExit) as error:
+            put_back.restore(before)
+            self.report({"ERROR"}, say("The preset has an error, and the settings stay as they were: {}",
+                                       f"{type(error).__name__}: {error}"))
+            return {"CANCELLED"}
+        bpy.types.AFTERLIGHT_PT_presets.bl_label = bpy.path.display_name(Path(self.filepath).name, title_case=False)
+        return {"FINISHED"}
 
 
 class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
@@ -169,11 +185,36 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
     bl_label = "Add Indirect Light Preset"
     bl_description = "Keep the settings of Indirect Light as a preset, or remove one"
     preset_menu = "AFTERLIGHT_PT_presets"
-    preset_subdir = "afterlight"
+    preset_subdir = SUBDIR
     preset_defines = ["settings = bpy.context.scene.afterlight"]
     # Strength and seed belong to the shot, not to the quality.
     preset_values = [f"settings.{parameter.name}" for parameter in PARAMETERS
                      if parameter.name not in {"strength", "seed", "use_animated_seed"}]
+
+    def execute(self, context):
+        """As Blender does it; but a name is no path to other files, and a disk that is full is no traceback."""
+        if self.remove_name and Path(self.name).name != self.name:
+            self.report({"ERROR"}, say('There is no preset "{}"', self.name))
+            return {"CANCELLED"}
+        was_there = self._file()
+        try:
+            return super().execute(context)
+        except (OSError, UnicodeError) as error:
+            if not was_there and (begun := self._file()):
+                Path(begun).unlink(missing_ok=True)
+            self.report({"ERROR"}, say("The preset could not be written ({}). Free some space on the disk of "
+                                       "Blender's user folder, or allow writing there", error))
+            return {"CANCELLED"}
+
+    def _file(self):
+        return bpy.utils.preset_find(self.as_filename(self.name), SUBDIR)
+
+
+def _is_preset(path):
+    """Whether a file lies in one of the folders that Blender looks for our presets in. Links are followed."""
+    path = Path(path).resolve()
+    return path.suffix == ".py" and path.is_file() and any(
+        path.parent == Path(folder).resolve() for folder in bpy.utils.preset_paths(SUBDIR))
 
 
 def other_scenes(scene):

@@ -67,7 +67,7 @@ class Soak:
         self._count_textures()
         found = collections.defaultdict(list)
         self._prepare(*MIX[0][:5], "unticked")
-        files, before = sorted(os.listdir(bpy.app.tempdir)), self._state()
+        files, before = _files(), self._state()
         for number in range(frames):
             self._frame(MIX[number % len(MIX)], number, folder)
             found["resident"].append(_resident())
@@ -84,7 +84,7 @@ class Soak:
         self._prepare(*MIX[0][:5], "unticked")
         found["left over"] = self.scenes.differences(before, self._state())
         bpy.ops.preferences.addon_disable(module=self.afterlight.__package__.removesuffix(".addon"))
-        found["files left"] = sorted(set(os.listdir(bpy.app.tempdir)) - set(files))
+        found["files left"] = sorted(_files() - files)
         return found
 
     def _look(self, found):
@@ -92,7 +92,7 @@ class Soak:
         found["textures made"].append(len(self.textures))
         found["textures"].append(self._alive())
         found["descriptors"].append(len(os.listdir("/proc/self/fd")))
-        found["files"].append(len([name for name in os.listdir(bpy.app.tempdir) if name.endswith(".exr")]))
+        found["files"].append(len([path for path in _files() if path.endswith(".exr")]))
 
     def _frame(self, line, number, folder):
         import bpy
@@ -167,6 +167,12 @@ class Soak:
         # Three: the list's, the loop's and the call's own.
         self.textures = [each for each in self.textures if sys.getrefcount(each) > 3]
         return len(self.textures)
+
+
+def _files():
+    """All that lies in Blender's temporary folder, folders as well."""
+    import bpy
+    return {os.path.join(folder, name) for folder, folders, files in os.walk(bpy.app.tempdir) for name in (*folders, *files)}
 
 
 def _resident():

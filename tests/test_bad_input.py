@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What cannot be lit: one clear message, the plain picture where there is one, settings as they were, no traceback."""
 
+import io
 import os
 import shutil
 import sys
@@ -16,6 +17,11 @@ def scene(fresh):
     scene = box(fresh, samples=1)
     scene.afterlight.enabled = True
     return scene
+
+
+@pytest.fixture
+def handlers(afterlight):
+    return afterlight.addon.pipeline.handlers
 
 
 @pytest.fixture(scope="module")
@@ -132,15 +138,15 @@ def test_temporary_folder_cannot_be_written(scene, refuse, plain):
         os.mkdir(folder)
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
 def test_disk_full(scene, refuse, plain):
-    trap = os.path.join(bpy.app.tempdir, f"afterlight_{scene.session_uid}.exr")
-    os.symlink("/dev/full", trap)
+    """No room for the passes, though there is for the picture."""
+    resource = pytest.importorskip("resource", reason="needs a limit for the size of files")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, before[1]))
     try:
-        refuse("could not be", "Temporary Files" if not os.path.exists(trap) else "disk", picture=plain)
+        refuse("could not be", "disk", picture=plain)
     finally:
-        if os.path.lexists(trap):
-            os.remove(trap)
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def test_openexr_missing(scene, refuse, plain, monkeypatch):
@@ -214,6 +220,50 @@ def test_the_helper_scene_says_what_it_is(scene, tmp_path, capfd):
     assert "Traceback" not in "".join(capfd.readouterr())
 
 
+def ascii_only():
+    return io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+
+
+def closed():
+    stream = io.StringIO()
+    stream.close()
+    return stream
+
+
+class Odd:
+    """Put there by another script."""
+
+    def write(self, text):
+        raise OSError("the pipe is broken")
+
+
+@pytest.mark.parametrize("terminal", [ascii_only, closed, Odd, lambda: None])
+def test_any_terminal(scene, handlers, monkeypatch, terminal):
+    """What a render begins with goes on after its messages: the light of the render before must be kept out."""
+    scene.camera.data.type, scene.camera.name = "PANO", "Kämera"
+    stream = terminal()
+    monkeypatch.setattr(sys, "stdout", stream)
+    monkeypatch.setattr(sys, "stderr", stream)
+    handlers.before_render(scene)
+    muted = scene.compositing_node_group.nodes["Afterlight"].mute
+    handlers.after_render(scene)
+    assert muted and "Kämera" in scene.afterlight.report
+    if terminal == ascii_only:
+        stream.flush()
+        assert b'The camera "K\\xe4mera" is panoramic' in stream.buffer.getvalue()
+
+
+@pytest.mark.parametrize("terminal", [ascii_only, closed, Odd, lambda: None])
+def test_any_terminal_for_an_error_of_our_own(scene, afterlight, monkeypatch, tmp_path, terminal):
+    def fails(*_, **__):
+        raise ValueError("Käse")
+    monkeypatch.setattr(afterlight.addon.light, "gather_indirect", fails)
+    monkeypatch.setattr(sys, "stdout", terminal())
+    monkeypatch.setattr(sys, "stderr", sys.stdout)
+    render(scene, tmp_path / "picture.exr")
+    assert "an error of its own (Käse)" in scene.afterlight.report
+
+
 def test_background_render_makes_what_python_saves_passes_through(scene, afterlight):
     """`blender -b -f 1` starts without the image that F12 makes."""
     passes, handlers = afterlight.addon.pipeline.passes, afterlight.addon.pipeline.handlers
@@ -221,14 +271,3 @@ def test_background_render_makes_what_python_saves_passes_through(scene, afterli
         bpy.data.images.remove(passes.render_result())
     handlers.before_render(scene)
     assert passes.render_result() and scene.afterlight.report == ""
-
-
-def test_the_exit_code_of_a_failed_background_render(afterlight):
-    status = afterlight.addon.pipeline.status
-    child = os.fork()
-    if child == 0:  # only to leave as `blender -b` would
-        shutil.rmtree = lambda *_, **__: None
-        status._failed = True
-        status._exit_code()
-        os._exit(7)
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 1

@@ -120,6 +120,69 @@ def test_presets_are_added_and_removed_as_blenders_own(scene, addon):
     assert bpy.ops.afterlight.preset_add(name="draft", remove_name=True) == {"CANCELLED"} and Path(shipped).exists()
 
 
+@pytest.fixture
+def presets():
+    """The user's folder of presets, as it was afterwards."""
+    folder = Path(bpy.utils.user_resource("SCRIPTS", path="presets/afterlight", create=True))
+    before = set(folder.iterdir())
+    yield folder
+    for path in set(folder.iterdir()) - before:
+        path.unlink()
+
+
+CHANGES = "import bpy\nbpy.context.scene.afterlight.samples = 77\n"
+
+
+def test_no_script_but_a_preset_is_run(scene, presets, tmp_path):
+    (tmp_path / "other.py").write_text(CHANGES)
+    (presets / "link.py").symlink_to(tmp_path / "other.py")
+    (presets / "text.txt").write_text(CHANGES)
+    inside = presets / "inside.py"
+    inside.write_text(CHANGES)
+    outside = presets / "sub" / ".." / ".." / "other.py"
+    for path in (tmp_path / "other.py", presets / "link.py", presets / "text.txt", outside, presets / "none.py", presets,
+                 ""):
+        with pytest.raises(RuntimeError, match="does not lie in a folder of Indirect Light presets"):
+            bpy.ops.afterlight.preset(filepath=str(path))
+        assert scene.afterlight.samples == 256
+    assert bpy.ops.afterlight.preset(filepath=str(inside)) == {"FINISHED"} and scene.afterlight.samples == 77
+
+
+@pytest.mark.parametrize("error, words", [("raise KeyError('x')", "KeyError: 'x'"), ("def (", "SyntaxError"),
+                                          ("settings", "NameError"), ("raise SystemExit(3)", "SystemExit: 3")])
+def test_a_preset_with_an_error_changes_nothing(scene, addon, presets, capfd, error, words):
+    label = addon.panel.AFTERLIGHT_PT_presets.bl_label
+    (presets / "broken.py").write_text(CHANGES + error)
+    capfd.readouterr()
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.afterlight.preset(filepath=str(presets / "broken.py"))
+    assert scene.afterlight.samples == 256 and addon.panel.AFTERLIGHT_PT_presets.bl_label == label
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+def test_the_name_of_a_preset_is_no_path(scene, presets):
+    precious = presets.parent / "precious.py"
+    precious.touch()
+    for name in ("../precious", str(precious.with_suffix(""))):
+        with pytest.raises(RuntimeError, match="There is no preset"):
+            bpy.ops.afterlight.preset_add(name=name, remove_name=True)
+    assert precious.exists()
+
+
+def test_presets_on_a_disk_that_is_full(scene, presets, capfd):
+    resource = pytest.importorskip("resource", reason="needs a limit for the size of files")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    capfd.readouterr()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10, before[1]))
+    try:
+        with pytest.raises(RuntimeError) as raised:
+            bpy.ops.afterlight.preset_add(name="Full")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert "could not be written" in str(raised.value) and "Traceback" not in str(raised.value)
+    assert not (presets / "Full.py").exists(), "no preset that is cut short"
+
+
 def test_each_shipped_preset_has_a_tooltip_of_its_own(scene, addon):
     """What the mouse shows over the entries of the menu: one of ours as it is drawn, and a user's."""
     operators = addon.operators

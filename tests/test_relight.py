@@ -2,6 +2,7 @@
 """Instant re-light: the picture of a fresh render with the new settings, without EEVEE, and nothing altered."""
 
 import os
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -84,7 +85,8 @@ def test_a_render_region_and_a_crop(scene, tmp_path):
     (lambda scene: setattr(scene.render, "resolution_x", 32), "resolution"),
     (lambda scene: setattr(scene.render, "use_border", True) or setattr(scene.render, "border_max_x", 0.5), "region"),
     (lambda scene: scene.view_layers.new("Front"), "View layers"),
-    (lambda scene: os.remove(os.path.join(bpy.app.tempdir, name_of_kept())), "temporary folder"),
+    (lambda scene: os.remove(files()[0]), "temporary folder"),
+    (lambda scene: setattr(scene.render, "engine", "BLENDER_WORKBENCH"), "Set Render Engine to EEVEE"),
     (lambda scene: bpy.ops.afterlight.free_passes(), "Press F12"),
     (lambda scene: setattr(scene.afterlight, "enabled", False), "Tick"),
 ])
@@ -92,17 +94,14 @@ def test_what_stands_in_the_way_is_said(scene, tmp_path, change, words):
     render(scene, tmp_path / "first.exr")
     assert bpy.ops.afterlight.update.poll()
     change(scene)
+    engine = scene.render.engine
     with pytest.raises(RuntimeError, match=words):
         bpy.ops.afterlight.update()
-    assert scene.render.engine == "BLENDER_EEVEE"
-
-
-def name_of_kept():
-    return next(name for name in os.listdir(bpy.app.tempdir) if name.startswith("afterlight"))
+    assert scene.render.engine == engine
 
 
 def files():
-    return [name for name in os.listdir(bpy.app.tempdir) if name.startswith("afterlight")]
+    return list(Path(bpy.app.tempdir).glob("afterlight_*/*.exr"))
 
 
 def test_one_file_is_kept_and_freed(scene, relight, tmp_path):
@@ -152,10 +151,67 @@ def test_a_failed_update_leaves_the_engine(scene, tmp_path, afterlight, monkeypa
     def fails(*_, **__):
         raise afterlight.addon.light.GpuUnavailable("No GPU today")
     monkeypatch.setattr(afterlight.addon.light, "gather_indirect", fails)
-    bpy.ops.afterlight.update()
+    with pytest.raises(RuntimeError, match="No GPU today"):
+        bpy.ops.afterlight.update()
     assert scene.render.engine == "BLENDER_EEVEE" and "No GPU today" in scene.afterlight.report
     monkeypatch.undo()
     bpy.ops.afterlight.update()
+    assert scene.afterlight.report == ""
+
+
+@pytest.mark.parametrize("others", [("A.Normal", "A.Normal.X"), ("A.B", "A.B.B")])
+def test_view_layers_with_names_like_passes(scene, relight, tmp_path, capfd, others):
+    """And a pass of the user's own that is named like the rest of such a name."""
+    scene.view_layers[0].name = "A"
+    for name in others:
+        scene.view_layers.new(name)
+    for layer in scene.view_layers:
+        layer.use_pass_z = layer.use_pass_normal = True
+        layer.aovs.add().name = "B"
+    first = read(render(scene, tmp_path / "first.exr", "OPEN_EXR_MULTILAYER"))
+    found = relight.kept(scene).layers
+    assert found.keys() == {"A", *others}
+    assert all(dict(passes).keys() >= {"Combined", "Depth", "Normal", "B"} for passes in found.values())
+    capfd.readouterr()
+    assert bpy.ops.afterlight.update() == {"FINISHED"} and scene.afterlight.report == ""
+    assert "Traceback" not in "".join(capfd.readouterr())
+    bpy.data.images["Render Result"].save_render(str(tmp_path / "again.exr"), scene=scene)
+    again = read(tmp_path / "again.exr")
+    assert first.keys() == again.keys() and len(first) > 3 * 10
+    for name, pixels in first.items():
+        np.testing.assert_array_equal(pixels, again[name], name)
+
+
+def gone(relight, monkeypatch):
+    for path in files():
+        path.unlink()
+
+
+def cut_short(relight, monkeypatch):
+    for path in files():
+        path.write_bytes(path.read_bytes()[:1000])
+
+
+def a_bug(relight, monkeypatch):
+    def fails(*_):
+        raise KeyError("no such pass")
+    monkeypatch.setattr(relight.passes, "read", fails)
+
+
+@pytest.mark.parametrize("trouble, words", [(gone, "could not be read back"), (cut_short, "could not be read back"),
+                                            (a_bug, "no such pass")])
+def test_passes_that_cannot_be_handed_back(scene, relight, tmp_path, monkeypatch, capfd, trouble, words):
+    """After the operator has looked whether they are there."""
+    render(scene, tmp_path / "first.exr")
+    monkeypatch.setattr(relight, "obstacle", lambda scene: "")
+    trouble(relight, monkeypatch)
+    capfd.readouterr()
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.afterlight.update()
+    assert words in scene.afterlight.report and scene.render.engine == "BLENDER_EEVEE"
+    assert trouble == a_bug or "Traceback" not in "".join(capfd.readouterr())
+    monkeypatch.undo()
+    render(scene, tmp_path / "again.exr")
     assert scene.afterlight.report == ""
 
 

@@ -361,12 +361,12 @@ def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monk
 
 def test_no_file_is_left_in_the_temporary_folder(scene, tmp_path):
     """But for the passes of the last frame, until they are freed."""
-    import os
     layered_tree(scene)
     scene.afterlight.enabled = True
 
     def files():
-        return sorted({*os.listdir(bpy.app.tempdir)} - {".afterlight.lock"})  # that one goes with the session
+        return sorted(path for path in Path(bpy.app.tempdir).rglob("*")  # our folder and its lock go with the session
+                      if path.name != ".lock" and not path.name.startswith("afterlight_"))
 
     before = files()
     for _ in range(2):

@@ -7,9 +7,7 @@ loads those of the view layer at hand, gathers (light/pipeline.py) and hands the
 a frame is lit again (relight.py), the scene itself has this engine for a moment and hands EEVEE's passes back.
 """
 
-import os
 import time
-import traceback
 from dataclasses import dataclass, field
 
 import bpy
@@ -86,6 +84,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             shot.unticked = True
             return
         shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
+        if again and not shot.problem:
+            shot.problem = status.message(source)  # EEVEE's passes could not be handed back: there is nothing to light
         if not shot.problem:
             frame = again.frame if again else source.frame_current
             shot.goes_on = not again and history.goes_on(source)
@@ -98,31 +98,28 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         shot, scene = self.shot, depsgraph.scene
         if shot is None:
             if relight.is_replayed(scene):
-                relight.replay(self, scene, depsgraph.view_layer.name)
+                self._attempt(scene, lambda: relight.replay(self, scene, depsgraph.view_layer.name))
             return
-        pictures = {}
-        try:
-            if shot.unticked:
-                self._warn(shot.scene, say("Indirect Light was unticked in the middle of a render: the frames from {} on are plain",
-                                           shot.scene.frame_current))
-                raise light.Cancelled
-            if shot.problem:
-                raise Problem("{}", shot.problem)
-            with turns.until(self.test_break):
-                pictures = self._gather(shot, depsgraph)
-        except light.Cancelled:
-            pass
-        except (Problem, light.GpuUnavailable) as problem:
-            self._fail(shot.scene, say(*problem.args))
-        except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
-            traceback.print_exc()
-            self._fail(shot.scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
-                                       "report them", error))
+        pictures = self._attempt(shot.scene, lambda: self._gather(shot, depsgraph)) or {}
         start = time.perf_counter()
         self._hand_back(shot, pictures)
         shot.spent("hand back", time.perf_counter() - start)
         status.timed(shot.scene, shot.seconds)
         status.took(shot.scene, shot.memory)
+
+    def _attempt(self, scene, work):
+        """work(), or None where it fails: then `scene`'s report says why."""
+        try:
+            with turns.until(self.test_break):
+                return work()
+        except light.Cancelled:
+            pass
+        except (Problem, light.GpuUnavailable) as problem:
+            self._fail(scene, say(*problem.args))
+        except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
+            status.tell_traceback()
+            self._fail(scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
+                                  "report them", error))
 
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
@@ -154,6 +151,12 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             turns.surely(lambda: setattr(helper, "camera", own))
 
     def _gather(self, shot, depsgraph):
+        if shot.unticked:
+            self._warn(shot.scene, say("Indirect Light was unticked in the middle of a render: the frames from {} on are plain",
+                                       shot.scene.frame_current))
+            raise light.Cancelled
+        if shot.problem:
+            raise Problem("{}", shot.problem)
         shot.seconds |= status.views_stages(shot.scene)
         start = time.perf_counter()
         if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
@@ -173,7 +176,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         further = [light.View(view.load, view.camera, view.shine) for view in saved]
         shot.memory = {"GPU memory": light.gpu_bytes(*shot.window[2:], shot.settings, len(further), shines=shot.shines,
                                                      averages=shot.goes_on),
-                       "passes file": sum(map(os.path.getsize, (path, *(view.path for view in saved))))}
+                       "passes file": sum(map(passes.size, (path, *(view.path for view in saved))))}
         start = time.perf_counter()
         timed, broken = {} if status.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}

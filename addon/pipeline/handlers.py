@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import (checks, events, history, leftovers, nodes, passes, relight, rendering, roles, status, still, turns, views, wiring,
+from . import (checks, events, history, nodes, passes, relight, rendering, roles, status, still, temp_files, turns, views, wiring,
                world)
 from .engine import AfterlightEngine
 
@@ -77,7 +77,7 @@ def _begin(scene):
     for finding in checks.findings(scene):
         if finding.fatal:
             status.fail(scene, finding.text)
-        print(f"Afterlight: {finding.text}")
+        status.tell(f"Afterlight: {finding.text}")
     if status.message(scene):
         _mute(scene)
 
@@ -147,11 +147,11 @@ def register():
     events.listen(FIRST, first=True)
     events.listen(HANDLERS)
     status.register()
-    leftovers.register()
+    temp_files.register()
 
 
 def unregister():
-    leftovers.unregister()
+    temp_files.unregister()
     status.unregister()
     events.ignore((*HANDLERS, *FIRST))
     rendering.reset()

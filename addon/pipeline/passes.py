@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import light
-from . import leftovers, sampling, turns
+from . import put_back, sampling, temp_files, turns
 from .status import Problem
 
 _early = {}  # (frame, path) by the scene's session_uid
@@ -36,15 +36,18 @@ def needed(settings):
 
 
 def save(scene):
-    """Write the finished passes of `scene` to a file in Blender's temporary folder and return its path.
+    """Write the finished passes of `scene` to a file in our temporary folder and return its path: always the same one,
+    unless the folder changes.
 
     Blender hands the pixels of a render to Python in no other way: a multilayer EXR, uncompressed, takes a tenth of
     a second at 1280 x 720. Raises Problem where it can't be written, light.Cancelled where the render is to stop.
     """
-    path = file_path(scene)
-    leftovers.claim(bpy.app.tempdir)
+    try:
+        path = temp_files.new(scene.session_uid)
+    except OSError as error:
+        raise _not_written(_text(error)) from error
     # Blender takes the format from the scene whose passes it writes, and lets no copy be given.
-    saved = turns.run(lambda: _to_multilayer_exr(scene.render.image_settings))
+    saved = turns.run(lambda: _to_multilayer_exr(scene.render))
     try:
         render_result().save_render(path, scene=scene)
     except (RuntimeError, OSError) as error:
@@ -54,7 +57,7 @@ def save(scene):
                           scene.name) from error
         raise _not_written(_text(error)) from error
     finally:
-        turns.surely(lambda: _put_back(scene.render.image_settings, saved))
+        turns.surely(lambda: put_back.restore(saved))
     if not os.path.exists(path):
         raise _not_written("there is no file")
     return path
@@ -77,11 +80,6 @@ def discard_early(*_):
     """A render begins or is over: what save_early() wrote for nobody goes."""
     while _early:
         discard(_early.popitem()[1][1])
-
-
-def file_path(scene):
-    """Where save() writes the passes of `scene`: the only files that Afterlight makes while it renders."""
-    return os.path.join(bpy.app.tempdir, f"{leftovers.PREFIX}{scene.session_uid}.exr")
 
 
 def render_result():
@@ -136,9 +134,8 @@ def contents(path, layers):
     """{view layer: [(pass, its channels in Blender's order)]} of a file that save() wrote."""
     found = {}
     for name in _channels(path):
-        of = max((layer for layer in layers if name.startswith(f"{layer}.")), key=len, default=None)
-        if of is not None:  # the file holds the compositor's picture as well
-            kind, _, channel = name.removeprefix(f"{of}.").rpartition(".")
+        of, kind, channel = ("", *name.rsplit(".", 2))[-3:]  # names of passes have no dots: Blender replaces them
+        if of in layers:  # the file holds the compositor's picture as well
             found.setdefault(of, {}).setdefault(kind, []).append(channel)
     order = "RGBXYZWUVA"
     return {layer: [(kind, "".join(sorted(channels, key=lambda channel: order.find(channel.upper()))))
@@ -153,6 +150,7 @@ def _channels(path):
         raise Problem("The OpenEXR module can't be imported ({}). It comes with the extension: remove Afterlight in "
                       "Preferences > Get Extensions and install it again from its zip", _text(error)) from error
     try:
+        temp_files.check(path)
         channels = _mapped(path, OpenEXR.File(path, separate_channels=True, header_only=True).header())
         if channels is None:
             parts = OpenEXR.File(path, separate_channels=True).parts
@@ -167,10 +165,15 @@ def _channels(path):
 
 def discard(path):
     """Remove a file that save() wrote; no error where it is gone."""
+    temp_files.remove(path)
+
+
+def size(path):
+    """Bytes of a file that save() wrote, 0 where it is gone."""
     try:
-        os.remove(path)
+        return os.path.getsize(path)
     except OSError:
-        pass
+        return 0
 
 
 def window(scene):
@@ -279,10 +282,13 @@ def _mapped(path, header):
     return {channel.name: planes[:, index] for index, channel in enumerate(channels)}
 
 
-def _to_multilayer_exr(image_settings):
-    """Image settings for save(). Returns {name: the user's own}."""
-    saved = {name: getattr(image_settings, name) for name, prop in image_settings.bl_rna.properties.items()
-             if prop.type != "POINTER" and not prop.is_readonly}
+def _to_multilayer_exr(render):
+    """Image settings for save(). Returns the user's own, for put_back.restore()."""
+    image_settings = render.image_settings
+    # Only what is in use: to read a name that was never chosen makes Blender print a warning.
+    linear = image_settings.has_linear_colorspace or image_settings.color_management == "OVERRIDE"
+    video = render.ffmpeg if image_settings.media_type == "VIDEO" else None
+    saved = put_back.record(image_settings, video, leave=() if linear else ("linear_colorspace_settings",))
     try:
         image_settings.media_type = "MULTI_LAYER_IMAGE"
         image_settings.file_format = "OPEN_EXR_MULTILAYER"
@@ -291,15 +297,9 @@ def _to_multilayer_exr(image_settings):
         image_settings.use_exr_interleave = True  # half the time to write of one part a pass (docs/blender.md)
         image_settings.use_preview = False
     except BaseException:
-        _put_back(image_settings, saved)
+        put_back.restore(saved)
         raise
     return saved
-
-
-def _put_back(image_settings, saved):
-    # What the media type and the format allow depends on those before them.
-    for name in ("media_type", "file_format", *saved):
-        setattr(image_settings, name, saved[name])
 
 
 def _not_written(why):

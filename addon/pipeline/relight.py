@@ -5,7 +5,6 @@ Blender composites only as the last step of a render, so a render is what happen
 and hands back the very passes that EEVEE had made. The helper scene and the compositor then follow as ever.
 """
 
-import os
 from dataclasses import dataclass
 
 import bpy
@@ -14,7 +13,7 @@ from bpy.app.handlers import persistent
 
 from .. import light
 from ..translations import say
-from . import events, passes, roles
+from . import events, passes, roles, status
 from .status import Problem
 from .wiring import ENGINE
 
@@ -50,7 +49,7 @@ def keep(scene, path, camera, views=(), wanted=0):
         passes.discard(path)
         return
     window, full = passes.window(scene)
-    _kept[scene.session_uid] = Kept(path, os.path.getsize(path), window, full, scene.frame_current, camera, layers,
+    _kept[scene.session_uid] = Kept(path, passes.size(path), window, full, scene.frame_current, camera, layers,
                                     tuple(views), wanted)
 
 
@@ -85,8 +84,9 @@ def obstacle(scene):
     found = kept(scene)
     if found is None:
         return say("There is no render of this scene to light again. Press F12 first")
-    if not os.path.exists(found.path) or os.path.getsize(found.path) != found.size or not all(
-            os.path.exists(view.path) for view in found.views):
+    if scene.render.engine != EEVEE:
+        return say("The light is gathered from EEVEE's passes. Set Render Engine to EEVEE")
+    if passes.size(found.path) != found.size or not all(passes.size(view.path) for view in found.views):
         return say("The kept passes were deleted from the temporary folder. Press F12")
     if (found.window, found.full) != passes.window(scene):
         return say("The resolution or the render region has changed since the last render. Press F12")
@@ -132,13 +132,15 @@ def replay(engine, scene, layer):
     """Hand the passes of a view layer back, as EEVEE had made them. Raises status.Problem where the file is gone."""
     _exchanged[scene.session_uid] = True
     found = kept(scene)
+    arrays = passes.read(found.path, found.window)
     *_, width, height = found.window
     result = engine.begin_result(0, 0, width, height, layer=layer)
-    arrays = passes.read(found.path, found.window)
-    for name, channels in found.layers[layer]:
-        pixels = np.stack([arrays(f"{layer}.{name}.{channel}")[::-1] for channel in channels], axis=-1)
-        result.layers[0].passes[name].rect.foreach_set(pixels.ravel())
-    engine.end_result(result)
+    try:
+        for name, channels in found.layers[layer]:
+            pixels = np.stack([arrays(f"{layer}.{name}.{channel}")[::-1] for channel in channels], axis=-1)
+            result.layers[0].passes[name].rect.foreach_set(pixels.ravel())
+    finally:
+        engine.end_result(result)
 
 
 class AFTERLIGHT_OT_update(bpy.types.Operator):
@@ -173,15 +175,19 @@ class AFTERLIGHT_OT_update(bpy.types.Operator):
     def _render(self, scene, how):
         exchange(scene)
         try:
-            return bpy.ops.render.render(how) & {"FINISHED", "CANCELLED"} or {"FINISHED"}
+            done = bpy.ops.render.render(how) & {"FINISHED", "CANCELLED"} or {"FINISHED"}
+            problem = "" if bpy.app.is_job_running("RENDER") else status.message(scene)
         except RuntimeError as error:  # Blender's own words on why it does not render
-            self.report({"ERROR"}, " ".join(str(error).removeprefix("Error: ").split()))
-            return {"CANCELLED"}
+            problem = " ".join(str(error).removeprefix("Error: ").split())
         finally:
             if bpy.app.is_job_running("RENDER"):
                 bpy.app.timers.register(_watch)
             else:
                 finish()
+        if problem:
+            self.report({"ERROR"}, problem)
+            return {"CANCELLED"}
+        return done
 
 
 class AFTERLIGHT_OT_free_passes(bpy.types.Operator):

@@ -3,7 +3,6 @@
 what it does to the cameras of the views holds for the same frame."""
 
 import time
-import traceback
 
 import bpy
 import numpy as np
@@ -38,7 +37,7 @@ class AfterlightScout(status.Reporter, bpy.types.RenderEngine):
         except Problem as problem:
             self._warn(scene, say(*problem.args))
         except Exception as error:  # a bug of ours must not cost the light of the main view
-            traceback.print_exc()
+            status.tell_traceback()
             self._warn(scene, say("Afterlight met an error of its own ({}). The terminal has the details; please "
                                   "report them", error))
         status.scouted(scene, time.perf_counter() - start)

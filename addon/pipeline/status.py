@@ -4,14 +4,15 @@
 import atexit
 import ctypes
 import os
-import shutil
 import sys
 import time
+import traceback
+from contextlib import suppress
 
 import bpy
 
 from ..translations import say
-from . import turns
+from . import temp_files, turns
 
 _messages = {}
 _warnings = {}
@@ -129,6 +130,20 @@ def memory(scene):
     return _memory.get(scene.session_uid, {})
 
 
+def tell(text, stream=None):
+    """Print a line on the terminal, or to another stream: with escapes for what its encoding lacks, and nowhere if it
+    is gone."""
+    stream = stream or sys.stdout
+    with suppress(Exception):  # other scripts put there what they like, and no render may fail for a line of text
+        encoding = getattr(stream, "encoding", None) or "ascii"
+        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream)
+
+
+def tell_traceback():
+    """Print the error that is being handled, which is a bug of ours."""
+    tell(traceback.format_exc(), sys.stderr)
+
+
 def pop_up(text, title):
     """Show a text in the window as soon as that can be, if there is one."""
     def draw(menu, _context):
@@ -148,20 +163,21 @@ def _exit_code():
     """
     if not _failed:
         return
-    print("Afterlight: exit code 1, because a render was not lit", file=sys.stderr)
-    sys.stdout.flush()
-    sys.stderr.flush()
+    tell("Afterlight: exit code 1, because a render was not lit", sys.stderr)
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(Exception):
+            stream.flush()
     try:  # Blender's own output waits in C's buffers when it goes to a file
         ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
     except OSError:
         pass
-    shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
+    temp_files.leave()
     os._exit(1)
 
 
 def register():
-    # As a Python module (no binary) Blender is a guest in somebody's process, whose exit is theirs.
-    if bpy.app.background and bpy.app.binary_path:
+    # As a Python module Blender is a guest in somebody's process, whose exit is theirs.
+    if bpy.app.background and not bpy.app.module:
         atexit.register(_exit_code)
 
 

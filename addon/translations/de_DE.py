@@ -146,6 +146,15 @@ TEXTS = {
     "Tick Too": "Auch einschalten",
     "Tick Indirect Light in those scenes as well": "Indirektes Licht in diesen Szenen auch einschalten",
     "Settings copied to {}": "Einstellungen kopiert nach {}",
+    '"{}" does not lie in a folder of Indirect Light presets, and is not run. Choose one from the panel\'s list of presets':
+        '„{}“ liegt in keinem Ordner für Voreinstellungen des indirekten Lichts und wird nicht ausgeführt. Eine aus der '
+        'Liste der Voreinstellungen im Panel wählen',
+    "The preset has an error, and the settings stay as they were: {}":
+        "Die Voreinstellung hat einen Fehler, und die Einstellungen bleiben, wie sie waren: {}",
+    'There is no preset "{}"': "Es gibt keine Voreinstellung „{}“",
+    "The preset could not be written ({}). Free some space on the disk of Blender's user folder, or allow writing there":
+        "Die Voreinstellung ließ sich nicht schreiben ({}). Auf dem Datenträger von Blenders Benutzerordner Platz schaffen oder das "
+        "Schreiben dort erlauben",
     'There is no other scene "{}" that can be changed': 'Es gibt keine andere Szene "{}", die sich ändern lässt',
     "The file has no other scene that can be changed": "Die Datei hat keine andere Szene, die sich ändern lässt",
     "The scene is linked from another file and can't be changed here":
@@ -201,6 +210,8 @@ TEXTS = {
         "Von dieser Szene ist nichts gerendert, was neu beleuchtet werden könnte. Zuerst F12 drücken",
     "The kept passes were deleted from the temporary folder. Press F12":
         "Die behaltenen Passes wurden aus dem Ordner für temporäre Dateien gelöscht. F12 drücken",
+    "The light is gathered from EEVEE's passes. Set Render Engine to EEVEE":
+        "Das Licht wird aus EEVEEs Passes gesammelt. Die Renderengine auf EEVEE setzen",
     "The resolution or the render region has changed since the last render. Press F12":
         "Auflösung oder Renderbereich haben sich seit dem letzten Rendern geändert. F12 drücken",
     "View layers were added or renamed since the last render. Press F12":

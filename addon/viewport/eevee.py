@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import light
 from ..light import device, live
-from ..pipeline import passes
+from ..pipeline import passes, put_back
 
 # What is drawn: the passes as light/live.py names them, and as the viewport's shading does. Only the last but one changes with lamps.
 SHADING = {"place": "POSITION", "normal": "NORMAL", "diffuse_color": "DIFFUSE_COLOR", "diffuse_direct": "DIFFUSE_LIGHT",
@@ -67,16 +67,14 @@ def drawing(stage):
     held = [(getattr(scene, part), name, value) for part, name, value in _SCENE]
     held += [(getattr(stage.space, part), name, value) for part, name, value in _SPACE]
     held += [(stage.space.shading, name, value) for name, value in (*_SHADED, ("render_pass", "COMBINED"))]
-    before = [getattr(owner, name) for owner, name, _ in held]
+    before = [(owner, name, put_back.current(owner, name)) for owner, name, _ in held]
     try:
-        for (owner, name, value), own in zip(held, before):
+        for (owner, name, value), (*_, own) in zip(held, before):
             if own != value:
                 setattr(owner, name, value)
         yield
     finally:
-        for (owner, name, _), own in zip(held, before):
-            if getattr(owner, name) != own:
-                setattr(owner, name, own)
+        put_back.restore(before)
 
 
 def camera_of(view_matrix, window_matrix, size):

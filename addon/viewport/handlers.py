@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where Blender calls us as it draws its viewports, and how it is asked to draw them again."""
 
-import traceback
 
 import blf
 import bpy
@@ -69,7 +68,7 @@ def _after():
     except light.GpuUnavailable as error:
         _refuse(scene, say(*error.args))
     except Exception as error:  # a bug of ours must not cost the viewport
-        traceback.print_exc()
+        status.tell_traceback()
         _refuse(scene, say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error))
     finally:
         screen.forget()
