@@ -4,11 +4,20 @@
 import bpy
 
 
-def listen(handlers, first=False):
-    """Have Blender call functions: (name of one of its lists, function) each. first: before those of everybody else."""
+def listen(handlers):
+    """Have Blender call functions: (name of one of its lists, function) each."""
     for event, handler in handlers:
-        called = getattr(bpy.app.handlers, event)
-        called.insert(0 if first else len(called), handler)
+        getattr(bpy.app.handlers, event).append(handler)
+
+
+def call_last(event, call):
+    """Have Blender make a call once, after all handlers of the event that it is calling right now."""
+    called = getattr(bpy.app.handlers, event)
+
+    def last(*_):
+        called.remove(last)
+        call()
+    called.append(last)
 
 
 def ignore(handlers):

@@ -61,6 +61,7 @@ def before_render(scene, *_):
     rendering.begin()
     if scene.afterlight.enabled:
         turns.surely(lambda: _begin(scene))  # in a window Blender calls this in the render's thread
+    events.call_last("render_init", rendering.lock)  # scripts may still tick the box in handlers of theirs
 
 
 def _begin(scene):
@@ -80,12 +81,6 @@ def _begin(scene):
         status.tell(f"Afterlight: {finding.text}")
     if status.message(scene):
         _mute(scene)
-
-
-@persistent
-def before_frame(*_):
-    """Of a render, or of an animation that is played."""
-    rendering.lock()
 
 
 @persistent
@@ -140,11 +135,9 @@ _muted = []  # names of trees and nodes
 HANDLERS = (("depsgraph_update_post", follow_edits), ("load_post", after_load), ("undo_post", follow_all),
             ("redo_post", follow_all), ("save_pre", follow_all), ("render_init", before_render),
             ("render_complete", after_render), ("render_cancel", after_render))
-FIRST = ("frame_change_pre", before_frame), ("render_pre", before_frame)
 
 
 def register():
-    events.listen(FIRST, first=True)
     events.listen(HANDLERS)
     status.register()
     temp_files.register()
@@ -153,5 +146,5 @@ def register():
 def unregister():
     temp_files.unregister()
     status.unregister()
-    events.ignore((*HANDLERS, *FIRST))
+    events.ignore(HANDLERS)
     rendering.reset()

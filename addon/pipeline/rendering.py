@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether a render is under way, and which scenes must wait for its end.
 
-From its first frame on Blender holds the scenes and the compositor of a render: adding or removing some then, from a handler,
-a timer or a driver, crashes Blender. Whoever wants to asks postpones() first; the scenes that had to wait are set up, or cleared,
+From its beginning on Blender holds the scenes and the compositor of a render: adding or removing some then, from a handler, a
+timer, a driver or a thread, crashes Blender. Whoever wants to asks postpones() first; the scenes that had to wait are set up, or cleared,
 when the render is over.
 """
 
-_renders = []              # for each render that goes on, whether its first frame has begun: one may begin within another's handlers
+_renders = []              # for each render that goes on, whether it is locked: one may begin within another's handlers
 _waiting = set()           # session_uids of scenes
 
 
 def begin():
-    """A render begins. Until its first frame the file may still be changed."""
+    """A render begins. Until lock() the file may still be changed."""
     _renders.append(False)
 
 
 def lock():
-    """A frame begins; of a render, if one goes on."""
+    """Blender begins to evaluate the scenes of the render."""
     if _renders:
         _renders[-1] = True
 
