@@ -6,6 +6,7 @@ from bpy.app.handlers import persistent
 
 from . import (checks, events, history, nodes, passes, relight, rendering, roles, status, still, temp_files, turns, views, wiring,
                world)
+from ..translations import say
 from .engine import AfterlightEngine
 
 
@@ -95,6 +96,8 @@ def after_render(*_):
 def _catch_up(waited):
     """Set up, or clear, the scenes with these session_uids, which had to wait for the end of a render."""
     for scene in [scene for scene in bpy.data.scenes if scene.session_uid in waited and scene.library is None]:
+        if scene.afterlight.enabled and not roles.own(scene, roles.HELPER):
+            status.fail(scene, say("Indirect Light was ticked in the middle of a render: it takes effect with the next one"))
         (wiring.connect if scene.afterlight.enabled else wiring.disconnect)(scene)
 
 

@@ -260,6 +260,8 @@ TEXTS = {
     "next one. Scripts should do that before the render begins":
         "Mitten in einem Rendering wurde indirektes Licht eingeschaltet oder eine Einstellung geändert, die seine Nodes ändert: das "
         "wirkt ab dem nächsten. Skripte sollten das tun, bevor das Rendern beginnt",
+    "Indirect Light was ticked in the middle of a render: it takes effect with the next one":
+        "Indirektes Licht wurde mitten in einem Rendering eingeschaltet: es wirkt ab dem nächsten",
     "Indirect Light was unticked in the middle of a render: the frames from {} on are plain":
         "Indirektes Licht wurde mitten in einem Rendering ausgeschaltet: ab Bild {} sind die Bilder ohne Licht",
     'The compositor uses the Image of no Render Layers node of "{}", so the light is added to nothing. Link the Image of one, or the '

@@ -58,7 +58,7 @@ class FileMachine(RuleBasedStateMachine):
         before = digest.of_the_user()
         yield
         self.settle()
-        assert not digest.lost(before, digest.of_the_user()), what
+        self.compare(before, what)
 
     @contextmanager
     def by_the_user(self, what):
@@ -67,7 +67,11 @@ class FileMachine(RuleBasedStateMachine):
         yield
         before = digest.of_the_user()
         self.settle()
-        assert not digest.lost(before, digest.of_the_user()), what
+        self.compare(before, what)
+
+    def compare(self, before, what):
+        lost = digest.lost(before, digest.of_the_user())
+        assert not lost, f"{what}: {lost}"
 
     def settle(self):
         bpy.context.view_layer.update()
@@ -291,15 +295,16 @@ class FileMachine(RuleBasedStateMachine):
         settings = scene.afterlight
         if not settings.enabled or scene.camera is None or not any(layer.use for layer in scene.view_layers):
             return
+        set_format(scene)
+        scene.render.filepath = os.path.join(self.folder, "picture.exr")
         with self.by_afterlight(f"render {index} {update}"):
-            lit = self.picture(scene, "lit")
+            lit = self.picture(scene)
             report = settings.report
             if update and not report and bpy.ops.afterlight.update.poll():
                 bpy.ops.afterlight.update()
-        before = scene.compositing_node_group, scene.render.use_compositing
         with self.by_afterlight(f"plain {index}"):
             settings.enabled = False
-            plain = self.picture(scene, "plain") if scene.render.use_compositing == before[1] else None
+            plain = self.picture(scene)
         with self.by_afterlight(f"tick again {index}"):
             settings.enabled = True
         if lit is None or plain is None:
@@ -308,10 +313,8 @@ class FileMachine(RuleBasedStateMachine):
         if report:
             assert abs(lit - plain).max() < 2e-3, f"neither lit nor plain: {report}"
 
-    def picture(self, scene, name):
-        path = os.path.join(self.folder, f"{name}.exr")
-        set_format(scene)
-        scene.render.filepath = path
+    def picture(self, scene):
+        path = scene.render.filepath
         if os.path.exists(path):
             os.remove(path)
         try:
