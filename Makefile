@@ -40,8 +40,11 @@ motion: package  ## error, flicker, lag and trails in moving shots; make motion 
 soak: package    ## 300 frames in one process: does memory grow, does anything stay behind? Half an hour; needs Linux
 	$(python) -m benchmarks.soak
 
+fuzz: setup      ## what people do to files in any order, and files that claim anything: an hour; make fuzz FUZZ='--minutes 5'
+	cd tests && PYTHONPATH=.:../tools ../$(python) -m fuzz hour $(FUZZ)
+
 clean:           ## remove what was made, but for .venv and the downloaded wheels
 	rm -rf dist build .pytest_cache .hypothesis
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test desktop-test package demo clip samples bench speed accuracy motion soak clean
+.PHONY: help setup test desktop-test package demo clip samples bench speed accuracy motion soak fuzz clean
