@@ -33,7 +33,7 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "gloss", "denoise", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
+    """"add", "light", "gloss", "denoise", "lines", "view", "plain" (an ordinary node in a tree we made), or None for the user's own."""
     return node.get(MARK)
 
 

@@ -35,13 +35,14 @@ class Kept:
     layers: dict
     views: tuple = ()        # of views.Saved
     wanted: int = 0          # how many views the settings asked for
+    in_front: bool = False   # whether volumes or Blended materials were to be reckoned with
 
 
 _kept = {}        # by the scene's session_uid
 _exchanged = {}   # session_uids of scenes that have our engine for a moment: whether it has been called by now
 
 
-def keep(scene, path, camera, views=(), wanted=0):
+def keep(scene, path, camera, views=(), wanted=0, in_front=False):
     """Keep the file of a frame that is done; one that was kept before goes, and so does a file that can't be read."""
     forget(scene.session_uid, but=(path, *(view.path for view in views)))
     try:
@@ -51,7 +52,7 @@ def keep(scene, path, camera, views=(), wanted=0):
         return
     window, full = passes.window(scene)
     _kept[scene.session_uid] = Kept(path, os.path.getsize(path), window, full, scene.frame_current, camera, layers,
-                                    tuple(views), wanted)
+                                    tuple(views), wanted, in_front)
 
 
 def kept(scene):

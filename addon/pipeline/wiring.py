@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import between, nodes, roughness, views, world
+from . import between, lines, nodes, passes, roughness, transmittance, views, world
 from .nodes import MARK
 from .passes import MOTION, PASSES, needed
 
@@ -18,6 +18,8 @@ def connect(scene):
     settings = scene.afterlight
     old, helper = settings.helper, _own_helper(scene)
     _mirror_layers(scene, helper)
+    for group in nodes.trees(scene.compositing_node_group):
+        lines.unsplice(group, scene)
     tree = _tree_in_use(scene)
     views.connect(scene, tree, helper)
     for group in nodes.trees(tree):
@@ -40,6 +42,7 @@ def connect(scene):
             between.splice_denoise(group, scene)
         else:
             between.unsplice_denoise(group, helper)
+        lines.splice(group, scene)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
 
@@ -79,10 +82,24 @@ def follow(scene):
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
-        if layer.name in lit:
-            _switch_passes(scene, layer, _passes_of(scene, layer))
+    were_drawn = {layer.name for layer in scene.view_layers if lines.is_wanted(scene, layer.name)}
+    for group in nodes.trees(scene.compositing_node_group):
+        lines.unsplice(group, scene)
+    follow_passes(scene)
+    if {layer.name for layer in scene.view_layers if lines.is_wanted(scene, layer.name)} - were_drawn:
+        for group in nodes.trees(scene.compositing_node_group):
+            lines.splice(group, scene)
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
         helper.name = _helper_name(scene)
+
+
+def follow_passes(scene):
+    """Switch on the passes that are read of the view layers whose light is added, and off what we switched on and is read no more."""
+    in_front = transmittance.needed(scene)
+    lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, scene.afterlight.helper)}
+    for layer in scene.view_layers:
+        if layer.name in lit:
+            _switch_passes(scene, layer, [*_passes_of(scene, layer), *in_front, *lines.needed(scene, layer)])
 
 
 def disconnect(scene):
@@ -92,6 +109,7 @@ def disconnect(scene):
     is_ours = helper is not None and source(helper) == scene
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for group in nodes.trees(tree):
+            lines.unsplice(group, scene)
             between.unsplice_denoise(group, helper)
             between.unsplice_gloss(group, helper)
             nodes.unsplice(group, scene, helper)
@@ -160,6 +178,8 @@ def faults(scene):
         found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
     if wants_denoise(scene) and any(between.lacks_denoise(group, scene) for group in nodes.trees(tree)):
         found[say("The Denoise node of the indirect light was deleted")] = "REPAIR"
+    if any(lines.lacks(group, scene) for group in nodes.trees(tree)):
+        found[say("The node that lays the Freestyle lines over the light was deleted")] = "REPAIR"
     if any(mirror.use and not all(getattr(layer, switch) for switch, _ in _passes_of(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
@@ -293,12 +313,12 @@ def _switch_passes(scene, layer, wanted):
     unwanted = ours - wanted
     used = nodes.used_passes(scene, layer.name) if unwanted else ()
     for switch, name in (*((switch, name) for _, switch, name, _ in (*PASSES, MOTION)),
-                         roughness.COLOR, roughness.DIRECT, roughness.MATERIAL):
-        if switch in wanted and not getattr(layer, switch):
+                         roughness.MATERIAL, *transmittance.PASSES, lines.LINES):
+        if switch in wanted and not passes.is_on(layer, switch):
             ours.add(switch)
-            setattr(layer, switch, True)
+            passes.turn(layer, switch, True)
         elif switch in unwanted and name not in used:
-            setattr(layer, switch, False)
+            passes.turn(layer, switch, False)
     ours -= unwanted
     if ours != set(layer.get(MARK, ())):
         if ours:
