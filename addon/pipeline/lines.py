@@ -13,13 +13,28 @@ from . import passes
 from .nodes import A, MARK, RESULT, new_node, role, shows_picture, socket, source
 
 LINES = "freestyle_settings.as_render_pass", "Freestyle"  # the view layer's switch, as passes.is_on() has it, and the pass
+HELD = "afterlight_lines"  # a scene's custom property, while it keeps Freestyle off for a moment
 OVER, UNDER = "Foreground", "Background"
 
 
 def needed(scene, layer):
     """(switch, pass) of the lines of a view layer: nothing where there are none, or the user has them as a pass already."""
-    draws = scene.render.use_freestyle and layer.use_freestyle
+    draws = (scene.render.use_freestyle or HELD in scene) and layer.use_freestyle
     return (LINES,) if draws and (_are_ours(layer) or not passes.is_on(layer, LINES[0])) else ()
+
+
+def hold(scene):
+    """Keep Blender from drawing the lines in the next render, which repeats passes that have them. release() must follow."""
+    if scene.render.use_freestyle:
+        scene[HELD] = True  # on the scene, so that a step that is undone into this moment has it as well
+        scene.render.use_freestyle = False
+
+
+def release(scene):
+    """Let Blender draw the lines again, after hold()."""
+    if HELD in scene:
+        scene.render.use_freestyle = True
+        del scene[HELD]
 
 
 def splice(tree, scene):

@@ -14,7 +14,7 @@ from bpy.app.handlers import persistent
 
 from .. import light
 from ..translations import say
-from . import events, passes, wiring
+from . import events, lines, passes, wiring
 from .status import Problem
 from .wiring import ENGINE
 
@@ -104,6 +104,7 @@ def is_replayed(scene):
 def exchange(scene):
     """Let the next render of `scene` repeat its kept frame. restore() must follow."""
     _exchanged[scene.session_uid] = False
+    lines.hold(scene)
     scene.render.engine = ENGINE
 
 
@@ -111,6 +112,7 @@ def exchange(scene):
 def restore(*_):
     """Give every scene its own engine again. A render that goes on keeps the one that it began with."""
     for scene in bpy.data.scenes:
+        lines.release(scene)
         if scene.render.engine == ENGINE and not wiring.is_helper(scene):
             scene.render.engine = EEVEE
 
