@@ -61,7 +61,7 @@ def test_shadow_is_filled_by_distance(share, blurred):
     surface = np.full((HEIGHT, WIDTH, 3), 0.3)
     surface[24:, 16:48] = 0
     found = share(*known(through, surface, volume=0.1), blurred)
-    np.testing.assert_allclose(found, through, atol=0.02)
+    np.testing.assert_allclose(found, through, atol=0.06 if blurred else 0.02)  # of larger cells
 
 
 def test_dark_things_before_the_smoke_keep_their_light(share):
@@ -123,7 +123,7 @@ def volume(tree, kind="ShaderNodeVolumeAbsorption", density=1.0, color=(0, 0, 0)
 def fog(scene, **options):
     scene.world = bpy.data.worlds.new("Fog")
     scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0
-    scene.eevee.volumetric_end = 20
+    scene.eevee.use_volume_custom_range, scene.eevee.volumetric_end = True, 20  # without, EEVEE's fog is three times too thick here
     volume(scene.world.node_tree, **options)
 
 
@@ -172,6 +172,7 @@ SCENES = {
     "blended": (lambda scene: wall(blended(), (0, 0, 0), (0, 0, 0)), True),
     "a volume": (lambda scene: wall(cloud(), (0, 0, 0), (0, 0, 0)), True),
     "a volume object": (lambda scene: put(bpy.data.volumes.new("Smoke")), True),
+    "Grease Pencil": (lambda scene: put(bpy.data.grease_pencils.new("Strokes")), True),
     "fog": (fog, True),
     "an instance": (instanced, True),
     "geometry nodes": (by_geometry_nodes, True),
@@ -179,7 +180,7 @@ SCENES = {
                                            setattr(scene, "world", None)), True),
     "an override": (lambda scene: setattr(scene.view_layers[0], "material_override", blended()), True),
 }
-EXTRA = "use_pass_glossy_color", "use_pass_environment", "eevee.use_pass_transparent", "eevee.use_pass_volume_direct"
+EXTRA = "use_pass_grease_pencil", "use_pass_glossy_color", "use_pass_environment", "eevee.use_pass_transparent", "eevee.use_pass_volume_direct"
 
 
 @pytest.mark.parametrize("kind", SCENES)
@@ -271,6 +272,21 @@ def black_cube(scene):
     return scene
 
 
+def stroke(scene):
+    """Black ink over the middle of the picture."""
+    strokes = bpy.data.grease_pencils.new("Strokes")
+    drawing = strokes.layers.new("Ink").frames.new(1).drawing
+    drawing.add_strokes([2])
+    for point, x in zip(drawing.strokes[0].points, (-1, 1)):
+        point.position, point.radius, point.opacity = (x, 0, 0), 0.3, 1
+    ink = bpy.data.materials.new("Ink")
+    bpy.data.materials.create_gpencil_data(ink)
+    ink.grease_pencil.color = 0, 0, 0, 1
+    strokes.materials.append(ink)
+    put(strokes)
+    return scene
+
+
 def foggy(scene, **options):
     fog(scene, **options)
     return scene
@@ -282,6 +298,7 @@ PICTURES = {
     "dithered": lambda scene: dithered(room(scene)),
     "dithered and cards": lambda scene: cards(dithered(room(scene))),
     "black cube": lambda scene: black_cube(room(scene)),
+    "stroke": lambda scene: stroke(room(scene)),
     "mist": lambda scene: foggy(room(scene), density=0.2, color=(0.8, 0.5, 0)),
     "thick": lambda scene: foggy(room(scene), kind="ShaderNodeVolumeScatter", density=1.0, color=(1, 1, 1)),
     "beam": beam,
@@ -338,7 +355,7 @@ def test_blended_cards_let_their_share_through(pictures):
 def test_cards_in_the_dark_let_their_share_through(pictures):
     dark, found = pictures("beam"), pictures("beam, cards").light
     for alpha, place in CARDS.items():
-        assert dark.surface[at(place)].max() < 1e-3 and dark.light[at(place)].min() > 0.01, "dark but for its bounce"
+        assert dark.surface[at(place)].max() < 1e-3 and dark.light[at(place)].mean() > 0.005, "dark but for its bounce"
         assert found[at(place)].mean() / dark.light[at(place)].mean() == pytest.approx(1 - alpha, abs=0.01), alpha
 
 
@@ -351,8 +368,14 @@ def test_dithered_cards_are_not_taken_twice(pictures):
 
 def test_a_black_volume_stays_black(pictures):
     found = pictures("black cube")
-    assert found.plain[MIDDLE].max() < 1e-4 and pictures("bare").light[MIDDLE].min() > 0.1
+    assert found.plain[MIDDLE].max() < 1e-4 and pictures("bare").light[MIDDLE].min() > 0.05
     assert found.lit[MIDDLE].max() < 1e-3
+
+
+def test_grease_pencil_stays_black(pictures):
+    found = pictures("stroke")
+    assert found.plain[MIDDLE].max() < 1e-4 and found.lit[MIDDLE].max() < 1e-3
+    assert found.light[:6].mean() == pytest.approx(pictures("bare").light[:6].mean(), rel=0.02)
 
 
 PARTS = MIDDLE, np.s_[10:14, 22:42], np.s_[22:26, 22:42]
@@ -375,7 +398,7 @@ def test_thick_fog_that_glows_hides_the_bounce(pictures):
 
 def test_shadows_in_fog_take_it_from_around(pictures):
     dark, found = pictures("beam"), pictures("beam, mist")
-    assert dark.surface[DARK].max() < 1e-3 and dark.light[DARK].min() > 0.01
+    assert dark.surface[DARK].max() < 1e-3 and dark.light[DARK].mean() > 0.005
     taken = pictures("mist").plain[DARK].mean((0, 1)) / pictures("bare").plain[DARK].mean((0, 1))
     np.testing.assert_allclose(found.light[DARK].mean((0, 1)) / dark.light[DARK].mean((0, 1)), taken, rtol=0.2)
 

@@ -39,7 +39,7 @@ class Shot:
     goes_on: bool = False            # whether frames of an animation are averaged
     problem: str = ""
     shines: bool = False             # whether the light off glossy surfaces is wanted
-    in_front: bool = False           # whether volumes or Blended materials may take of the light
+    in_front: bool = False           # whether something may take of the light on its way (media.py)
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
 
@@ -202,7 +202,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         return gloss
 
     def _let_through(self, shot, path, pictures):
-        """{pass: (H, W, 3)}: the light as it reaches the camera, through volumes and Blended materials."""
+        """{pass: (H, W, 3)}: the light as it reaches the camera, through what media.py knows of."""
         if not shot.in_front:
             return pictures
         start, scene = time.perf_counter(), shot.scene

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether a scene has anything that light comes through on its way to the camera and that EEVEE's passes of surfaces know nothing
-of: volumes, and materials whose Render Method is Blended."""
+of: volumes, materials whose Render Method is Blended, and Grease Pencil."""
 
 import bpy
 
 
 def present(scene):
-    """Whether volumes or Blended materials can be in the picture of `scene`. What is hidden counts as well: it may be keyframed.
+    """Whether volumes, Blended materials or Grease Pencil can be in the picture of `scene`. What is hidden counts as well: it may be keyframed.
 
     Objects are looked at only where the file has such a material, and those of instanced collections with them. Materials that
     Geometry Nodes put on are not traced to their objects: any that uses one is enough."""
@@ -17,12 +17,11 @@ def present(scene):
     found = {material for material in bpy.data.materials if _lets_through(material)}
     if found & overrides:
         return True
-    volumes = bool(bpy.data.volumes)
-    if not found and not volumes:
+    if not found and not bpy.data.volumes and not bpy.data.grease_pencils:
         return False
     by_nodes = any(isinstance(user, bpy.types.NodeTree) and user.bl_idname == "GeometryNodeTree"
                    for users in bpy.data.user_map(subset=found).values() for user in users) if found else False
-    return any(thing.type == "VOLUME" or any(slot.material in found for slot in thing.material_slots)
+    return any(thing.type in {"VOLUME", "GREASEPENCIL"} or any(slot.material in found for slot in thing.material_slots)
                or any(modifier.type == "NODES" and (by_nodes or _takes(modifier, found)) for modifier in thing.modifiers)
                for thing in _objects(scene))
 

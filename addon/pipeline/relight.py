@@ -35,7 +35,7 @@ class Kept:
     layers: dict
     views: tuple = ()        # of views.Saved
     wanted: int = 0          # how many views the settings asked for
-    in_front: bool = False   # whether volumes or Blended materials were to be reckoned with
+    in_front: bool = False   # whether something may have taken of the light on its way (media.py)
 
 
 _kept = {}        # by the scene's session_uid

@@ -6,8 +6,9 @@ Volume Direct V and Transparent (B, and the opacity A of what is Blended) say wh
 
     C = T S + (1 - A) V + B,   S = Diffuse Direct * Diffuse Color + Glossy Direct * Glossy Color + Emission + Environment
 
-so that T follows by division wherever a surface is brighter than the rounding of these passes. Where it is not, in shadow, the
-extinction on the way there is taken from what is seen nearby at a like distance, and then from further off.
+Grease Pencil is drawn over that, and a pass of its own has its strokes: it counts as Blended. T follows by division wherever a
+surface is brighter than the rounding of these passes. Where it is not, in shadow, the extinction on the way there is taken from what
+is seen nearby at a like distance, and then from further off.
 """
 
 import numpy as np
@@ -17,8 +18,9 @@ from . import media, passes, roughness
 VOLUME = "eevee.use_pass_volume_direct", "Volume Direct"
 TRANSPARENT = "eevee.use_pass_transparent", "Transparent"
 ENVIRONMENT = "use_pass_environment", "Environment"
+STROKES = "use_pass_grease_pencil", "Grease Pencil"
 # Beside passes.PASSES: the view layer's switch, and the pass.
-PASSES = (roughness.COLOR, roughness.DIRECT, ENVIRONMENT, TRANSPARENT, VOLUME)
+PASSES = (roughness.COLOR, roughness.DIRECT, ENVIRONMENT, TRANSPARENT, VOLUME, STROKES)
 
 ROUNDING = 4e-3            # of the brightness of a pixel: passes are halves, and Combined weighs its samples by their brightness
 DARKEST = 1e-6             # W sr^-1 m^-2, below which nothing is told by division
@@ -44,11 +46,16 @@ def load(path, layer, window, cell, blurred):
     try:
         surface = (color("Diffuse Direct") * color("Diffuse Color") + color(roughness.DIRECT[1]) * color(roughness.COLOR[1])
                    + color("Emission") + color(ENVIRONMENT[1]))
-        found = through(color("Combined"), surface, color(VOLUME[1]), color(TRANSPARENT[1]),
-                        _finite(cut(f"{layer}.{TRANSPARENT[1]}.A")), cut(f"{layer}.Depth.Z"), cell, blurred)
+        blended, opacity = color(TRANSPARENT[1]), _finite(cut(f"{layer}.{TRANSPARENT[1]}.A"))
+        rest = color("Combined"), surface, color(VOLUME[1])
     except KeyError:
         return None
-    return found[::-1]
+    try:
+        strokes, clear = color(STROKES[1]), 1 - np.clip(_finite(cut(f"{layer}.{STROKES[1]}.A")), 0, 1)
+        blended, opacity = strokes + clear[..., None] * blended, 1 - clear * (1 - opacity)
+    except KeyError:  # Blender has no such pass where nothing is drawn
+        pass
+    return through(*rest, blended, opacity, cut(f"{layer}.Depth.Z"), cell, blurred)[::-1]
 
 
 def through(combined, surface, volume, blended, opacity, depth, cell, blurred=False):
