@@ -253,6 +253,8 @@ class AfterlightSettings(bpy.types.PropertyGroup):
         type=bpy.types.NodeTree, options={"HIDDEN"},
         description="The user's own compositor tree, while compositing was switched off for it")
     compositing_was_off: BoolProperty(options={"HIDDEN"})
+    holds_lines: BoolProperty(
+        options={"HIDDEN"}, description="Freestyle is off only until the light has been updated")
 
 
 class AfterlightLayer(bpy.types.PropertyGroup):

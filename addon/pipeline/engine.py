@@ -15,7 +15,8 @@ import numpy as np
 
 from .. import light, settings
 from ..translations import say
-from . import checks, history, passes, relight, roles, roughness, status, still, turns, views, wiring, world
+from . import (checks, history, media, passes, relight, roles, roughness, status, still, transmittance, turns, views, wiring,
+               world)
 from .nodes import GLOSSY_PASS, PASS
 from .status import Problem
 from .wiring import ENGINE
@@ -38,6 +39,7 @@ class Shot:
     problem: str = ""
     unticked: bool = False           # by a script, since the render began
     shines: bool = False             # whether the light off glossy surfaces is wanted
+    in_front: bool = False           # whether something may take of the light on its way (media.py)
     seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
     memory: dict = field(default_factory=dict)   # bytes at the fullest moment of the frame, by what they hold
 
@@ -91,6 +93,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
             shot.goes_on = not again and history.goes_on(source)
             shot.settings = settings.light_settings(source.afterlight, frame, shot.goes_on)
             shot.shines = wiring.wants_gloss(source) and not checks.holds_reflections(source)
+            shot.in_front = again.in_front if again else media.present(source)
             shot.camera = again.camera if again else self._look(depsgraph, source, shot.layer)
 
     def render(self, depsgraph):
@@ -124,7 +127,8 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
     def render_frame_finish(self):
         """All view layers of the frame are done: their passes are kept, to be lit again."""
         if self.file and self.shot and self.shot.camera:
-            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views, self.shot.views)
+            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views, self.shot.views,
+                         self.shot.in_front)
         elif self.file:
             for path in (self.file, *(view.path for view in self.views)):
                 passes.discard(path)
@@ -195,6 +199,7 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
                 "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "
                 "material that divides by zero or a light of unbounded strength",
                 count, name.replace("_", " "), shot.layer))
+        picture = self._let_through(shot, path, picture)
         for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
             shot.spent(stage, seconds)
         return picture
@@ -207,6 +212,18 @@ class AfterlightEngine(status.Reporter, bpy.types.RenderEngine):
         if gloss is None:
             self._warn(shot.scene, say("The last render has no passes for the glossy light. Press F12 to have it"))
         return gloss
+
+    def _let_through(self, shot, path, pictures):
+        """{pass: (H, W, 3)}: the light as it reaches the camera, through what media.py knows of."""
+        if not shot.in_front:
+            return pictures
+        start, scene = time.perf_counter(), shot.scene
+        blurred = scene.render.use_motion_blur or scene.camera.data.dof.use_dof
+        share = transmittance.load(path, shot.layer, shot.window, int(scene.eevee.volumetric_tile_size), blurred)
+        if share is not None:
+            pictures = {name: picture * share for name, picture in pictures.items()}
+        shot.spent("hand back", time.perf_counter() - start)
+        return pictures
 
     def _progress(self, stage, fraction):
         now = time.perf_counter()

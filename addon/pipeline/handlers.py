@@ -76,6 +76,8 @@ def _begin(scene):
     if bpy.app.background and scene.library is None:
         wiring.connect(scene)
         _ensure_render_result(scene.afterlight.helper)
+    elif scene.library is None and scene.afterlight.helper:  # nothing has followed what became of its materials
+        wiring.follow_passes(scene)
     for finding in checks.findings(scene):
         if finding.fatal:
             status.fail(scene, finding.text)

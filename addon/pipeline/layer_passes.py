@@ -1,33 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes of a view layer: those that Afterlight reads are switched on, and off again when nobody needs them."""
 
-from . import nodes, roughness
+from . import lines, nodes, passes, roughness, transmittance
 from .nodes import MARK
 from .passes import MOTION, PASSES, needed
 
-_ALL = (*((switch, name) for _, switch, name, _ in (*PASSES, MOTION)), roughness.COLOR, roughness.DIRECT, roughness.MATERIAL)
-_SWITCHES = {switch for switch, _ in _ALL}
+_ALL = dict((*((switch, name) for _, switch, name, _ in (*PASSES, MOTION)), roughness.COLOR, roughness.DIRECT, roughness.MATERIAL,
+             *transmittance.PASSES, lines.LINES))
 
 
-def wanted(scene, layer):
-    """(switch, pass) of all that is read of a view layer."""
+def of_the_gather(scene, layer):
+    """(switch, pass) of all that the gather reads of a view layer."""
     settings = scene.afterlight
     shines = settings.use_glossy and settings.method == "RADIOSITY"
     return [*((switch, name) for _, switch, name, _ in needed(settings)), *(roughness.needed(layer) if shines else ())]
 
 
-def switch(scene, layer, passes):
-    """Switch on `passes`, (switch, pass) each, and off those that we once switched on and that are not among them, but for passes
+def wanted(scene, layer):
+    """(switch, pass) of all that is read of a view layer."""
+    return [*of_the_gather(scene, layer), *transmittance.needed(scene), *lines.needed(scene, layer)]
+
+
+def switch(scene, layer, read):
+    """Switch on the passes in `read`, (switch, pass) each, and off those that we once switched on and that are not among them, but for passes
     that the user's own nodes have come to use."""
-    ours, wanted_now = _ours(layer), {each for each, _ in passes}
+    ours, wanted_now = _ours(layer), {each for each, _ in read}
     unwanted = ours - wanted_now
     used = nodes.used_passes(scene, layer.name) if unwanted else ()
-    for each, name in _ALL:
-        if each in wanted_now and not getattr(layer, each):
+    for each, name in _ALL.items():
+        if each in wanted_now and not passes.is_on(layer, each):
             ours.add(each)
-            setattr(layer, each, True)
+            passes.turn(layer, each, True)
         elif each in unwanted and name not in used:
-            setattr(layer, each, False)
+            passes.turn(layer, each, False)
     nodes.assign(layer.afterlight, "passes", ",".join(sorted(ours - unwanted)))
 
 
@@ -35,10 +40,10 @@ def adopt(scene):
     """Take over the record of a file of 0.1.0 to 0.3.0: a custom property that lists switches."""
     for layer in scene.view_layers:
         found = layer.get(MARK)
-        if isinstance(found, list) and found and all(isinstance(each, str) and each in _SWITCHES for each in found):
+        if isinstance(found, list) and found and all(isinstance(each, str) and each in _ALL for each in found):
             nodes.assign(layer.afterlight, "passes", ",".join(found))
             del layer[MARK]
 
 
 def _ours(layer):
-    return _SWITCHES.intersection(layer.afterlight.passes.split(","))
+    return set(_ALL).intersection(layer.afterlight.passes.split(","))

@@ -15,6 +15,7 @@ from .roles import MARK, is_helper
 
 MUTED = "afterlight_muted"  # custom property of light nodes that we muted because their picture is
 KINDS = {"add": {"ShaderNodeMix"}, "gloss": {"ShaderNodeMix"}, "denoise": {"CompositorNodeDenoise"},
+         "lines": {"CompositorNodeAlphaOver"},
          "light": {"CompositorNodeRLayers"}, "request": {"CompositorNodeRLayers"}, "view": {"CompositorNodeRLayers"},
          "plain": {"CompositorNodeRLayers", "NodeGroupOutput"}}
 PASS, GLOSSY_PASS = "Indirect", "Indirect Glossy"
@@ -38,7 +39,7 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "gloss", "denoise", "view", "request", "plain" (an ordinary node in a tree we made), or None for the user's own:
+    """"add", "light", "gloss", "denoise", "lines", "view", "request", "plain" (an ordinary node in a tree we made), or None for the user's own:
     a mark on a node that can't have that role is not ours."""
     kind = node.get(MARK)
     if not isinstance(kind, str) or node.bl_idname not in KINDS.get(kind, ()):
@@ -228,7 +229,7 @@ def follow_mutes(tree, scene):
             assign(socket(node.inputs, identifier), "default_value", (0.0, 0.0, 0.0, 0.0 if identifier == A else 1.0))
     for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
         link = socket(add.inputs, A).links[0]
-        users = [user.to_socket for user in socket(add.outputs, RESULT).links]
+        users = _users(socket(add.outputs, RESULT))
         assign(link.to_socket, "default_value", _as_color(users[0]) if users else (0.0, 0.0, 0.0, 0.0))
         light, is_muted = light_of(add), link.is_muted or link.from_node.mute
         if light is None or role(light) != "light":
@@ -254,6 +255,12 @@ def assign(data, name, value):
     old = getattr(data, name)
     if (tuple(old) != tuple(value)) if hasattr(old, "__len__") and not isinstance(old, str) else old != value:
         setattr(data, name, value)
+
+
+def _users(output):
+    """The inputs that take an output, those of the user behind nodes of ours."""
+    return [user for link in output.links for user in
+            (_users(link.to_node.outputs["Image"]) if role(link.to_node) == "lines" else [link.to_socket])]
 
 
 def _as_color(socket):

@@ -35,6 +35,17 @@ def needed(settings):
     return (*PASSES, MOTION) if averages_frames(settings) else PASSES
 
 
+def is_on(layer, switch):
+    """Whether a view layer renders a pass. switch: the path of a property from the view layer."""
+    return layer.path_resolve(switch)
+
+
+def turn(layer, switch, on):
+    """Let a view layer render a pass, or not. switch: as is_on() has it."""
+    owner, _, name = switch.rpartition(".")
+    setattr(layer.path_resolve(owner) if owner else layer, name, on)
+
+
 def save(scene):
     """Write the finished passes of `scene` to a file in our temporary folder and return its path: always the same one,
     unless the folder changes.

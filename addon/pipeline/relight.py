@@ -13,7 +13,7 @@ from bpy.app.handlers import persistent
 
 from .. import light
 from ..translations import say
-from . import events, passes, roles, status
+from . import events, lines, passes, roles, status
 from .status import Problem
 from .wiring import ENGINE
 
@@ -34,13 +34,14 @@ class Kept:
     layers: dict
     views: tuple = ()        # of views.Saved
     wanted: int = 0          # how many views the settings asked for
+    in_front: bool = False   # whether something may have taken of the light on its way (media.py)
 
 
 _kept = {}        # by the scene's session_uid
 _exchanged = {}   # session_uids of scenes that have our engine for a moment: whether it has been called by now
 
 
-def keep(scene, path, camera, views=(), wanted=0):
+def keep(scene, path, camera, views=(), wanted=0, in_front=False):
     """Keep the file of a frame that is done; one that was kept before goes, and so does a file that can't be read."""
     forget(scene.session_uid, but=(path, *(view.path for view in views)))
     try:
@@ -50,7 +51,7 @@ def keep(scene, path, camera, views=(), wanted=0):
         return
     window, full = passes.window(scene)
     _kept[scene.session_uid] = Kept(path, passes.size(path), window, full, scene.frame_current, camera, layers,
-                                    tuple(views), wanted)
+                                    tuple(views), wanted, in_front)
 
 
 def kept(scene):
@@ -103,6 +104,7 @@ def is_replayed(scene):
 def exchange(scene):
     """Let the next render of `scene` repeat its kept frame. restore() must follow."""
     _exchanged[scene.session_uid] = False
+    lines.hold(scene)
     scene.render.engine = ENGINE
 
 
@@ -110,6 +112,7 @@ def exchange(scene):
 def restore(*_):
     """Give every scene its own engine again. A render that goes on keeps the one that it began with."""
     for scene in bpy.data.scenes:
+        lines.release(scene)
         if scene.render.engine == ENGINE and not roles.is_helper(scene):
             scene.render.engine = EEVEE
 

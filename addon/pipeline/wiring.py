@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import between, layer_passes, nodes, own_tree, rendering, roles, views, world
+from . import between, layer_passes, lines, nodes, own_tree, passes, rendering, roles, views, world
 from .roles import HELPER, is_helper, source
 
 ENGINE = "AFTERLIGHT"
@@ -19,6 +19,8 @@ def connect(scene):
     settings = scene.afterlight
     old, helper = settings.helper, _own_helper(scene)
     _mirror_layers(scene, helper)
+    for group in nodes.trees(scene.compositing_node_group):
+        lines.unsplice(group, scene)
     tree = own_tree.in_use(scene)
     views.connect(scene, tree, helper)
     for group in nodes.trees(tree):
@@ -39,6 +41,7 @@ def connect(scene):
             between.splice_denoise(group, scene)
         else:
             between.unsplice_denoise(group, helper)
+        lines.splice(group, scene)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
 
@@ -79,10 +82,22 @@ def follow(scene):
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
-        if layer.name in lit:
-            layer_passes.switch(scene, layer, layer_passes.wanted(scene, layer))
+    were_drawn = {layer.name for layer in scene.view_layers if lines.is_wanted(scene, layer.name)}
+    for group in nodes.trees(scene.compositing_node_group):
+        lines.unsplice(group, scene)
+    follow_passes(scene)
+    if {layer.name for layer in scene.view_layers if lines.is_wanted(scene, layer.name)} - were_drawn:
+        for group in nodes.trees(scene.compositing_node_group):
+            lines.splice(group, scene)
     if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
         helper.name = _helper_name(scene)
+
+
+def follow_passes(scene):
+    """Switch on the passes that are read of the view layers whose light is added, and off what we switched on and is read no more."""
+    lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, scene.afterlight.helper)}
+    for layer in [layer for layer in scene.view_layers if layer.name in lit]:
+        layer_passes.switch(scene, layer, layer_passes.wanted(scene, layer))
 
 
 def disconnect(scene):
@@ -95,6 +110,7 @@ def disconnect(scene):
     views.disconnect(scene)
     for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
         for group in nodes.trees(tree):
+            lines.unsplice(group, scene)
             between.unsplice_denoise(group, helper)
             between.unsplice_gloss(group, helper)
             nodes.unsplice(group, scene, helper)
@@ -163,7 +179,9 @@ def faults(scene):
         found[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
     if wants_denoise(scene) and any(between.lacks_denoise(group, scene) for group in nodes.trees(tree)):
         found[say("The Denoise node of the indirect light was deleted")] = "REPAIR"
-    if any(mirror.use and not all(getattr(layer, switch) for switch, _ in layer_passes.wanted(scene, layer))
+    if any(lines.lacks(group, scene) for group in nodes.trees(tree)):
+        found[say("The node that lays the Freestyle lines over the light was deleted")] = "REPAIR"
+    if any(mirror.use and not all(passes.is_on(layer, switch) for switch, _ in layer_passes.of_the_gather(scene, layer))
            for layer, mirror in zip(scene.view_layers, helper.view_layers)):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
     return found
@@ -215,3 +233,30 @@ def _offer_passes(helper):
     """Let the Render Layers nodes of `helper` offer the passes that its engine gives now."""
     for layer in helper.view_layers:
         layer.update_render_passes()
+
+
+def _passes_of(scene, layer):
+    """(switch, pass) of all that is read of a view layer."""
+    return [*((switch, name) for _, switch, name, _ in needed(scene.afterlight)),
+            *(roughness.needed(layer) if wants_gloss(scene) else ())]
+
+
+def _switch_passes(scene, layer, wanted):
+    """Switch on what is wanted, (switch, pass) each, and off what we once switched on and is not wanted, but for passes that the
+    user's own nodes have come to use."""
+    ours, wanted = set(layer.get(MARK, ())), {switch for switch, _ in wanted}
+    unwanted = ours - wanted
+    used = nodes.used_passes(scene, layer.name) if unwanted else ()
+    for switch, name in (*((switch, name) for _, switch, name, _ in (*PASSES, MOTION)),
+                         roughness.MATERIAL, *transmittance.PASSES, lines.LINES):
+        if switch in wanted and not passes.is_on(layer, switch):
+            ours.add(switch)
+            passes.turn(layer, switch, True)
+        elif switch in unwanted and name not in used:
+            passes.turn(layer, switch, False)
+    ours -= unwanted
+    if ours != set(layer.get(MARK, ())):
+        if ours:
+            layer[MARK] = sorted(ours)
+        else:
+            del layer[MARK]

@@ -102,6 +102,8 @@ TEXTS = {
         "Blenders Entrauschen-Node auf das Licht allein, im Compositor. Ein Zehntel näher als Glätten, wo die Startauflösung Voll "
         "ist; das Rauschen gröberer lässt er stehen",
     "The Denoise node of the indirect light was deleted": "Der Entrauschen-Node des indirekten Lichts wurde gelöscht",
+    "The node that lays the Freestyle lines over the light was deleted":
+        "Der Node, der die Freestyle-Linien über das Licht legt, wurde gelöscht",
 
     "Shadow World": "Welt abschatten",
     "Take the light of the world away where surfaces stand before it: EEVEE lets it shine through walls. For worlds of one "
