@@ -100,6 +100,20 @@ def test_a_pass_the_user_has_come_to_use_stays_on(scene):
     assert viewer.inputs["Image"].links[0].from_socket.name == "Depth"
 
 
+@pytest.mark.parametrize("kind", ["none", "simple", "layered"])
+def test_the_link_of_the_image_is_missed_and_put_back(scene, wiring, afterlight, kind):
+    """It gave a black picture, and nobody said so."""
+    TREES[kind](scene)
+    scene.afterlight.enabled = True
+    tree = scene.compositing_node_group
+    for link in [link for link in tree.links if link.to_node.name.startswith("Afterlight") and link.to_socket.identifier == "A_Color"]:
+        tree.links.remove(link)
+    (finding,) = afterlight.addon.pipeline.checks.findings(scene)
+    assert "no longer linked" in finding.text and finding.cure == "REPAIR"
+    bpy.ops.afterlight.repair()
+    assert not wiring.faults(scene)
+
+
 @pytest.mark.parametrize("kind", ["none", "simple"])
 @pytest.mark.parametrize("doomed", ["add", "light", "both"])
 def test_deleting_our_nodes_is_noticed_and_repaired(scene, wiring, afterlight, kind, doomed):

@@ -60,9 +60,16 @@ def pictures(tree, scene):
 
 
 def uses_light(tree, scene, helper):
-    """Whether the tree or its groups use the image of `scene`, or its light alone."""
-    return any(node.outputs[name].is_linked for node in all_nodes(tree) if node.bl_idname == "CompositorNodeRLayers"
-               for name, shown in (("Image", scene), (PASS, helper)) if node.scene == shown and name in node.outputs)
+    """Whether the tree or its groups use the image of `scene`, or, by nodes of the user's, its light alone."""
+    return any(role(link.to_node) is None or shown == scene for node in all_nodes(tree) if node.bl_idname == "CompositorNodeRLayers"
+               for name, shown in (("Image", scene), (PASS, helper)) if node.scene == shown and name in node.outputs
+               for link in node.outputs[name].links)
+
+
+def without_picture(tree, helper):
+    """The nodes that add the light of `helper` to nothing, since the link of the image was taken away."""
+    return [node for node in tree.nodes if role(node) == "add" and source(node, A) is None and (light := light_of(node))
+            and light.bl_idname == "CompositorNodeRLayers" and light.scene == helper]
 
 
 def request(tree, scene, helper):
@@ -103,6 +110,8 @@ def lost_image(tree, scene, helper):
 
 def splice(tree, picture, helper):
     """Put the light of `helper` between the image of a Render Layers node and whatever uses it."""
+    for add in [add for add in without_picture(tree, helper) if light_of(add).layer == picture.layer]:
+        tree.links.new(picture.outputs["Image"], socket(add.inputs, A))
     for link in picture.outputs["Image"].links:
         if role(link.to_node) == "add" and not source(link.to_node, B):
             tree.links.new(_light_for(tree, picture, helper).outputs[PASS], socket(link.to_node.inputs, B))

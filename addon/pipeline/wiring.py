@@ -161,13 +161,15 @@ def faults(scene):
         found[say("The node that adds the light to {} was deleted, and the links of the image with it. Link the Image "
                   "of its Render Layers node again", ", ".join(lost))] = (
                       "REPAIR" if own_tree.is_ours(scene, tree) else "")
+    if any(nodes.without_picture(group, helper) for group in nodes.trees(tree)):
+        found[say("The image is no longer linked to the node that adds the light to it")] = "REPAIR"
     dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
     if dark:
         found[say("The compositor uses {} without the indirect light: a node of Afterlight was deleted, or a Render "
                   "Layers node is new", ", ".join(dark))] = "REPAIR"
     if not any(nodes.shows(node, helper) for node in tree.nodes):
         found[say("Afterlight's Render Layers node was deleted from the compositor")] = "REPAIR"
-    elif not lost and not nodes.uses_light(tree, scene, helper) and not own_tree.is_untouched(scene, tree):
+    elif not found and not nodes.uses_light(tree, scene, helper) and not own_tree.is_untouched(scene, tree):
         found[say('The compositor uses the Image of no Render Layers node of "{}", so the light is added to nothing. Link the Image '
                   "of one, or the output Indirect of Afterlight's", scene.name)] = ""
     elif any(nodes.role(node) == "add" and nodes.shows_picture(node, scene) and not nodes.source(node, nodes.B)

@@ -266,6 +266,8 @@ TEXTS = {
         "Indirektes Licht wurde mitten in einem Rendering eingeschaltet: es wirkt ab dem nächsten",
     "Indirect Light was unticked in the middle of a render: the frames from {} on are plain":
         "Indirektes Licht wurde mitten in einem Rendering ausgeschaltet: ab Bild {} sind die Bilder ohne Licht",
+    "The image is no longer linked to the node that adds the light to it":
+        "Das Bild ist nicht mehr mit dem Node verbunden, der ihm das Licht hinzufügt",
     'The compositor uses the Image of no Render Layers node of "{}", so the light is added to nothing. Link the Image of one, or the '
     "output Indirect of Afterlight's":
         'Der Compositor nutzt das Bild keines Render-Ebenen-Nodes von "{}", also kommt das Licht in kein Bild. Das Bild von einem '
