@@ -213,8 +213,9 @@ def test_a_tree_that_the_file_calls_ours(scene, pointer, filled):
     tree.use_fake_user = True
     if filled:
         layers_node(tree, scene)["afterlight"] = "plain"
-    setattr(scene.afterlight, pointer, tree)
     scene.afterlight.enabled = True
+    scene.compositing_node_group = tree
+    setattr(scene.afterlight, pointer, tree)
     scene.afterlight.enabled = False
     assert tree == bpy.data.node_groups["Mine"] and len(tree.nodes) == int(filled) and not tree.links
 
@@ -265,3 +266,10 @@ def test_a_file_of_0_3_0(afterlight, pipeline):
     assert [tree.name for tree in bpy.data.node_groups] == ["Compositing"]
     assert not [camera for camera in bpy.data.cameras if camera.name.startswith(".")]
     assert not any(layer.use_pass_normal or "afterlight" in layer for scene in bpy.data.scenes for layer in scene.view_layers)
+
+
+def test_a_scene_that_is_linked_from_a_file_of_0_3_0(fresh, pipeline):
+    with bpy.data.libraries.load(str(OF_0_3_0), link=True) as (_, linked):
+        linked.scenes = ["Paper"]
+    (scene,) = linked.scenes
+    assert scene.library and pipeline.roles.source(scene.afterlight.helper) == scene and not pipeline.checks.findings(scene)

@@ -97,7 +97,7 @@ def adopt(lit):
     """Take over the scenes of a file of 0.1.0 to 0.3.0, which marked them by a custom property, and their cameras."""
     views = [each.scene for each in lit.afterlight.view_scenes]
     for scene, role in [(lit.afterlight.helper, HELPER), *zip(views, (SCOUT, *(VIEW,) * len(views)))]:
-        if (scene is None or scene.library or is_helper(scene) or scene.get(MARK) != role.lower() or not _has_our_size(scene)
+        if (scene is None or is_helper(scene) or scene.get(MARK) != role.lower() or not _has_our_size(scene)
                 or not scene.name.startswith(".Afterlight")):
             continue
         scene.afterlight.role, scene.afterlight.serves = role, lit

@@ -43,7 +43,8 @@ def of_ours():
 def _of_object(each, kind):
     if kind != "objects":
         return ()
-    users = sorted(holder.name for holder in each.users_collection)
+    ours = [scene.collection for scene in bpy.data.scenes if scene.afterlight.role]
+    users = sorted(holder.name for holder in each.users_collection if holder not in ours)
     return each.data.name if each.data else "", tuple(each.location), tuple(each.scale), tuple(users)
 
 

@@ -142,12 +142,17 @@ class FileMachine(RuleBasedStateMachine):
         ours = [scene for scene in bpy.data.scenes if scene.afterlight.role]
         if ours and len(bpy.data.scenes) < 12:
             with self.by_the_user(f"copy helper {how} {index}"):
-                bpy.context.window.scene = ours[index % len(ours)]
+                bpy.context.window.scene = original = ours[index % len(ours)]
                 bpy.ops.scene.new(type=how)
                 copy = bpy.context.window.scene
-            assert copy.name in bpy.data.scenes
-            bpy.context.window.scene = self.scenes()[0]
-            bpy.data.scenes.remove(copy)  # a copy is the user's to remove
+                for _ in range(2):
+                    bpy.context.view_layer.update()
+                    self.module.addon.pipeline.handlers.follow_all()
+                assert copy.name in bpy.data.scenes
+                bpy.context.window.scene = self.scenes()[0]  # a copy is the user's to remove, and what came with it
+                for thing in [thing for thing in copy.collection.objects if thing.name not in original.collection.objects]:
+                    bpy.data.cameras.remove(thing.data)
+                bpy.data.scenes.remove(copy)
 
     @rule(index=INDEX)
     def remove_scene(self, index):
@@ -328,7 +333,7 @@ class FileMachine(RuleBasedStateMachine):
     @invariant()
     def nothing_is_left_behind(self):
         if not any(scene.afterlight.enabled for scene in bpy.data.scenes):
-            assert not digest.of_ours()
+            assert not digest.of_ours(), digest.of_ours()
 
     @invariant()
     def our_scenes_are_as_many_as_they_should(self):
