@@ -43,7 +43,7 @@ def of_ours():
 def _of_object(each, kind):
     if kind != "objects":
         return ()
-    ours = [scene.collection for scene in bpy.data.scenes if scene.afterlight.role]
+    ours = [scene.collection for scene in bpy.data.scenes if scene.afterlight.role and scene.render.resolution_x == 4]
     users = sorted(holder.name for holder in each.users_collection if holder not in ours)
     return each.data.name if each.data else "", tuple(each.location), tuple(each.scale), tuple(users)
 
