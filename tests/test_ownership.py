@@ -114,6 +114,19 @@ def test_an_object_that_is_nowhere_else_keeps_its_scene(with_views):
     assert thing.users_scene == (kept,) and len(ours()) == 4
 
 
+@pytest.mark.parametrize("is_elsewhere", [True, False])
+def test_a_collection_in_a_helper_scene(with_views, is_elsewhere):
+    """What is in the lit scene as well is not lost with the helper, so that nothing is left of it; else the scene stays."""
+    collection, thing = bpy.data.collections.new("Mine"), bpy.data.objects.new("Thing", None)
+    collection.objects.link(thing)
+    with_views.afterlight.helper.collection.children.link(collection)
+    if is_elsewhere:
+        with_views.collection.children.link(collection)
+    with_views.afterlight.enabled = False
+    assert thing.users_collection == (collection,) and thing.users_scene
+    assert len(bpy.data.scenes) == (1 if is_elsewhere else 2)
+
+
 CLAIMS = {
     "a helper": lambda lit, other: setattr(lit.afterlight, "helper", other),
     "a view": lambda lit, other: setattr(lit.afterlight.view_scenes.add(), "scene", other),

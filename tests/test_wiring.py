@@ -3,7 +3,8 @@
 
 import bpy
 import pytest
-from scenes import TREES, box, compositor, differences, layered_tree, layers_node, simple_tree, written_down
+from scenes import (TREES, box, compositor, differences, layered_tree, layers_node, nested_tree, read_rgb, render, simple_tree,
+                    written_down)
 
 
 @pytest.fixture
@@ -98,6 +99,39 @@ def test_a_pass_the_user_has_come_to_use_stays_on(scene):
     layer = scene.view_layers[0]
     assert layer.use_pass_z and not layer.use_pass_normal
     assert viewer.inputs["Image"].links[0].from_socket.name == "Depth"
+
+
+def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, wiring, afterlight, tmp_path):
+    """Faults 8: after that a node "was deleted", and the picture stayed plain."""
+    tree = nested_tree(scene)
+    for node in [node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers"]:
+        tree.nodes.remove(node)
+    scene.eevee.taa_render_samples = 1
+    scene.afterlight.enabled = True
+    (finding,) = afterlight.addon.pipeline.checks.findings(scene)
+    assert finding.cure == "RENDER_LAYERS" and "inside node groups" in finding.text
+    bpy.ops.afterlight.mend(cure=finding.cure)
+    assert not wiring.faults(scene)
+    lit = read_rgb(render(scene, tmp_path / "lit.exr"))
+    assert scene.afterlight.report == ""
+    scene.afterlight.enabled = False
+    assert len(tree.nodes) == 4 and not ours(tree), "viewer, group, output, and the node that was asked for"
+    plain = read_rgb(render(scene, tmp_path / "plain.exr"))
+    assert lit.mean() > 1.1 * plain.mean()
+
+
+def test_a_compositor_that_uses_passes_only(scene, wiring):
+    """Faults 8: it was said that a node had been deleted."""
+    tree = compositor(scene)
+    picture = layers_node(tree, scene)
+    scene.view_layers[0].use_pass_z = True
+    tree.links.new(picture.outputs["Depth"], tree.nodes.new("NodeGroupOutput").inputs[0])
+    scene.afterlight.enabled = True
+    (fault,) = wiring.faults(scene)
+    assert "uses the Image of no Render Layers node" in fault
+    light = next(node for node in ours(tree))
+    tree.links.new(light.outputs["Indirect"], tree.nodes["Group Output"].inputs[0])
+    assert not wiring.faults(scene), "the light alone is a use of it"
 
 
 @pytest.mark.parametrize("kind", ["none", "simple", "layered"])

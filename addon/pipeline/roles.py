@@ -119,8 +119,11 @@ def _is_our_camera(thing):
 def _holds_things_of_the_user(scene, ours):
     """Whether something would be lost with the scene."""
     here = {scene.collection, *scene.collection.children_recursive}
-    return bool(scene.collection.children or scene.compositing_node_group or scene.sequence_editor
-                or any(thing != ours and here.issuperset(thing.users_collection) for thing in scene.collection.all_objects))
+    others = [*bpy.data.collections, *(each.collection for each in bpy.data.scenes)]
+    elsewhere = {child for parent in others if parent not in here for child in parent.children_recursive}
+    return bool(here - elsewhere - {scene.collection} or scene.compositing_node_group or scene.sequence_editor
+                or any(thing != ours and not (set(thing.users_collection) - here or elsewhere.intersection(thing.users_collection))
+                       for thing in scene.collection.all_objects))
 
 
 def _hand_over(scene):
