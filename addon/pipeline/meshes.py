@@ -22,26 +22,22 @@ class Found:
 
 def read(depsgraph):
     """Found of what EEVEE draws and does not see through. The solids and lamps must not outlive the depsgraph's evaluation."""
-    instances = depsgraph.object_instances
-    count = len(instances)
-    to_world, shown = np.empty((count, 4, 4), np.float32), np.empty(count, bool)
-    instances.foreach_get("matrix_world", to_world.ravel())
-    instances.foreach_get("show_self", shown)
-    to_world = to_world.transpose(0, 2, 1).astype(float)  # Blender's are columns
-    which, known, solids, looks, lamps = np.full(count, -1), {}, [], _Looks(), []
-    for index, instance in enumerate(instances):
+    which, known, solids, looks, lamps = [], {}, [], _Looks(), []
+    for instance in depsgraph.object_instances:
         thing = instance.object
         data = thing.data
-        if data is None:
-            continue
-        address = data.as_pointer()
-        if address not in known:
-            known[address] = _kind(thing, solids, looks)
-        which[index] = known[address]
-        if known[address] == LAMP:
-            lamps.append((data, to_world[index]))
+        kind = NOTHING if data is None else known.get(data.as_pointer())
+        if kind is None:
+            kind = known[data.as_pointer()] = _kind(thing, solids, looks)
+        if kind == LAMP:
+            lamps.append((data, len(which)))
+        which.append(kind)
+    to_world, shown = np.empty((len(which), 4, 4), np.float32), np.empty(len(which), bool)
+    depsgraph.object_instances.foreach_get("matrix_world", to_world.ravel())
+    depsgraph.object_instances.foreach_get("show_self", shown)
+    to_world, which = to_world.transpose(0, 2, 1).astype(float), np.array(which, int)  # Blender's are columns
     there = (which >= 0) & shown & np.isfinite(to_world).all((1, 2))
-    return Found(solids, which[there], to_world[there], looks.found, lamps)
+    return Found(solids, which[there], to_world[there], looks.found, [(data, to_world[index]) for data, index in lamps])
 
 
 NOTHING, LAMP = -1, -2     # instead of the index of a solid
