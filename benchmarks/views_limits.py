@@ -4,7 +4,8 @@
     .venv/bin/python -m benchmarks.views_limits [CASE ...]
 
 Prints a table: seconds to place the views and again in the next frame where nothing has changed, and the share of light
-that the main view and all views see. Cases: polygons, instances, objects, lamps, outdoors."""
+that the main view and all views see. Cases: polygons, subdivided, instances, crowd, objects, balls, lamps,
+outdoors."""
 
 import argparse
 import sys
@@ -62,6 +63,35 @@ def instances(scene):
     scenes.put(grid(99, 1.8), (0, 0, -1.2)).modifiers.new("Scatter", "NODES").node_group = group
 
 
+def crowd(scene):
+    """A hundred thousand cubes on the vertices of a mesh."""
+    line = np.linspace(-1.8, 1.8, 316)
+    points = np.stack([*np.meshgrid(line, line), np.full((316, 316), -1.3)], -1).reshape(-1, 3)
+    mesh = bpy.data.meshes.new("Points")
+    mesh.from_pydata(points.tolist(), [], [])
+    parent = scenes.put(mesh)
+    parent.instance_type = "VERTS"
+    bpy.ops.mesh.primitive_cube_add(size=0.01)
+    bpy.context.object.parent = parent
+
+
+def subdivided(scene):
+    """1.3 million polygons by Subdivision modifiers of the walls, and two million of a head."""
+    bpy.ops.mesh.primitive_monkey_add(size=1, location=(0.5, 0.5, -0.5))
+    for thing in [thing for thing in scene.objects if thing.type == "MESH"]:
+        modifier, is_head = thing.modifiers.new("Finer", "SUBSURF"), thing == bpy.context.object
+        modifier.subdivision_type = "CATMULL_CLARK" if is_head else "SIMPLE"
+        modifier.levels = modifier.render_levels = 6 if is_head else 9
+
+
+def balls(scene):
+    """Four hundred meshes of 600 polygons."""
+    rng = np.random.default_rng(0)
+    for _ in range(400):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=30, ring_count=20, radius=rng.uniform(0.03, 0.2),
+                                             location=rng.uniform((-1.9, -1.9, -1.4), (1.9, 1.9, 1.4)))
+
+
 def objects(scene):
     """Three thousand objects."""
     mesh = grid(4, 0.03)
@@ -92,7 +122,7 @@ def outdoors(scene):
     scene.camera.location, scene.camera.data.clip_end = (0, -200, 1.7), 50000
 
 
-CASES = {case.__name__: case for case in (polygons, instances, objects, lamps, outdoors)}
+CASES = {case.__name__: case for case in (polygons, subdivided, instances, crowd, objects, balls, lamps, outdoors)}
 
 
 def main():

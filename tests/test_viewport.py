@@ -15,7 +15,7 @@ from mathutils import Matrix
 def stamps(addon, scene):  # noqa: F811
     """A function that tells of which kinds something has changed since it was last called."""
     changes = import_module(f"{addon.__name__}.viewport.changes")
-    scene.afterlight.use_viewport = True
+    scene.afterlight.enabled = scene.afterlight.use_viewport = True
     bpy.context.view_layer.update()
     before = [changes.stamps(scene)]
 

@@ -170,5 +170,4 @@ def test_harmonics_of_a_known_sky(world):
     """L = 1 + z has the irradiance pi (1 + 2/3 n.z), to the size of the pixels."""
     up = ((np.arange(200) + 0.5) / 200 - 0.5) * np.pi
     radiance = np.repeat(np.repeat((1 + np.sin(up))[:, None, None], 400, 1), 3, 2)
-    assert np.allclose(world.harmonics(radiance, 0), [[1] * 3, [0] * 3, [0] * 3, [2 / 3] * 3], atol=1e-3)
-    assert np.allclose(world.harmonics(radiance, 1.5)[0], np.minimum(radiance, 1.5)[:, 0].T @ np.cos(up) / np.cos(up).sum())
+    assert np.allclose(world.harmonics(radiance), [[1] * 3, [0] * 3, [0] * 3, [2 / 3] * 3], atol=1e-3)

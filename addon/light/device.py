@@ -137,6 +137,7 @@ PASSES = {
     "split": Pass(("split",), ("picture",), "channel_out"),
     "span": Pass(("span",), ("picture",), "span_out"),
     "mean": Pass(("mean",), ("indirect", "mean"), "mean_out"),
+    "shrink": Pass(("shrink",), ("picture",), "shrunk_out"),
     "probe": Pass(("probe",), ("source",), "probed_out"),
     "probe_surfels": Pass(("probe",), ("surfels",), "probed_out"),
 }

@@ -71,7 +71,8 @@ def _of_engine(scene):
 
 
 def _of_camera(scene):
-    camera, spare = scene.camera, "CAMERA" if cures.spare_camera(scene) else ""
+    camera = scene.camera
+    spare = "CAMERA" if (camera is None or camera.type != "CAMERA") and cures.spare_camera(scene) else ""  # looks at all objects
     if camera is None:
         yield Finding(say("The scene has no camera. Choose one in the Scene properties") if spare else
                       say("The scene has no camera. Add one (Add > Camera) and make it the scene's camera"), spare)

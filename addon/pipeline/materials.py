@@ -5,12 +5,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..light import images
+
 UNKNOWN = 0.5              # albedo where a texture or a group of nodes decides
 # Nodes with a socket "Roughness" that is that of a reflection.
 GLOSSY = {"ShaderNodeBsdfPrincipled", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlossy", "ShaderNodeBsdfMetallic",
           "ShaderNodeBsdfGlass", "ShaderNodeEeveeSpecular"}
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])   # of linear Rec. 709, as Blender makes a number of a colour
-SAMPLED = 512              # pixels along a side of a texture that are looked at
+SAMPLED = 512              # means along a side of a texture that are looked at
 DEEPEST = 8                # shader nodes behind one another that are looked through
 
 
@@ -159,18 +161,10 @@ def _rough(node, otherwise, depth):
 
 def _mean(image, channel):
     """Mean of the number that an image texture's socket "Color" or "Alpha" gives where a single one is wanted; None without pixels."""
-    width, height = image.size if image else (0, 0)
-    if not width or image.channels < 3:
+    found = images.means(image, SAMPLED, SAMPLED) if image else None
+    if found is None:
         return None
-    pixels = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(pixels)
-    pixels = pixels.reshape(height, width, -1)[::max(1, height // SAMPLED), ::max(1, width // SAMPLED)].astype(float)
-    if channel == "Alpha":
-        return float(pixels[..., 3].mean()) if image.channels > 3 else 1.0
-    color = pixels[..., :3]
-    if not image.is_float and image.colorspace_settings.name == "sRGB":
-        color = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
-    return float((color @ LUMINANCE).mean())
+    return float((found[..., 3] if channel == "Alpha" else found[..., :3] @ LUMINANCE).mean())
 
 
 def _behind(socket):

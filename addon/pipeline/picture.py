@@ -50,8 +50,9 @@ class Picture:
         """What placement.bounces() asks: from the picture where it shows the point, else by the lamps and materials."""
         def radiance(places, normals, things):
             albedo, emission = geometry.look(things)
-            direct = rays.direct_light(geometry, places, normals, rng) + self._sky
             seen, row, column = self.sees(places, normals)
+            direct = np.full(len(places), self._sky)
+            direct[~seen] += rays.direct_light(geometry, places[~seen], normals[~seen], rng)
             for guess, known in ((direct, self._frame.diffuse_direct), (albedo, self._frame.diffuse_color),
                                  (emission, self._frame.emission)):
                 shown = np.nan_to_num(np.mean([axis[row, column] for axis in known], 0), posinf=0.0)

@@ -21,7 +21,7 @@ PATHS = 1500               # that tell how much of the light is seen
 CHOOSING_PATHS = 4000      # that places are chosen by. Light may come by few of them, through a door,
 CHOOSING_POINTS = 2000     # so these are taken from what they hit, as often as there is light
 DEPTH = 4                  # bounces of a path at most
-PLACES = 150               # on them, that a view may have
+PLACES = 100               # on them, that a view may have
 ROUNDS = 3                 # of taking views back, at most
 LEAST_GAIN = 0.005         # of all weight, that a further view must newly see
 CLEARANCE = 0.01           # of the scene's size, between a view and any surface
@@ -55,6 +55,11 @@ class Bounces:
         which, times = np.unique(np.minimum(np.searchsorted(ends, at), len(ends) - 1), return_counts=True)
         return replace(self, starts=self.starts[which], places=self.places[which], normals=self.normals[which], toward=None,
                        sent=None, weights=times / count), seen[which]
+
+    def only(self, which):
+        """These points alone. They don't know what they are toward. which: (N,) bool."""
+        return replace(self, starts=self.starts[which], places=self.places[which], normals=self.normals[which], toward=None,
+                       sent=None, weights=self.weights[which])
 
     def arrives(self, seen):
         """The share of light that reaches the picture where only what is seen reflects it. seen: (N,) bool."""
@@ -124,19 +129,20 @@ def place(light, seen, cast, half, most, rng, kept=()):
     """Poses of at most `most` views. seen: (N,) bool, what the main view sees of `light`. half: tangents of half the
     views' fields. kept: poses that stay before others are chosen where they see as much."""
     light, seen = light.drawn(seen, CHOOSING_POINTS, rng)
-    options = [(pose, sees(pose, half, light, visible(pose[:3, 3], light, cast))) for pose in kept]
-    for position in _free_places(light, cast, rng):
-        reached = visible(position, light, cast)
-        options += [(pose, sees(pose, half, light, reached)) for pose in (looking(position, axes) for axes in DIRECTIONS)]
-    if not options:
+    unseen = light.only(~seen)
+    saw = [sees(pose, half, unseen, visible(pose[:3, 3], unseen, cast))[None] for pose in kept]
+    free = _free_places(light, cast, rng)
+    for position in free:
+        way = (unseen.places - position).astype(np.float32)
+        saw.append(visible(position, unseen, cast) & _in_frame(TO_VIEWS, way, half))
+    if not saw:
         return []
-    poses, saw = zip(*options, strict=True)
-    saw = np.array(saw)
-    saw_as_number, favour = saw.astype(np.float32), np.where(np.arange(len(poses)) < len(kept), 1.1, 1.0)
+    saw = np.concatenate(saw)
+    saw_as_number, favour = saw.astype(np.float32), np.where(np.arange(len(saw)) < len(kept), 1.1, 1.0)
 
     def best_beside(chosen):
         """(option, what it newly sees) beside those chosen."""
-        gain = saw_as_number @ np.where(seen | saw[chosen].any(0), 0, light.weights).astype(np.float32)
+        gain = saw_as_number @ np.where(saw[chosen].any(0), 0, unseen.weights).astype(np.float32)
         best = int(np.argmax(gain * favour))
         return best, gain[best]
 
@@ -155,14 +161,17 @@ def place(light, seen, cast, half, most, rng, kept=()):
                 chosen.append(best)
         if set(chosen) == set(before):
             break
-    return [poses[option] for option in chosen]
+    stands = [divmod(option - len(kept), len(DIRECTIONS)) for option in chosen]
+    return [kept[option] if option < len(kept) else looking(free[place], DIRECTIONS[way])
+            for option, (place, way) in zip(chosen, stands)]
 
 
 def covered(light, seen, cast, half, poses):
     """Bounces.arrives() of what the main view sees, and with each pose."""
-    shares = [light.arrives(seen)]
+    seen, shares = seen.copy(), [light.arrives(seen)]
     for pose in poses:
-        seen = seen | sees(pose, half, light, visible(pose[:3, 3], light, cast))
+        new = ~seen & sees(pose, half, light, True)
+        seen[new] = visible(pose[:3, 3], light.only(new), cast)
         shares.append(light.arrives(seen))
     return shares
 
@@ -192,9 +201,13 @@ def visible(position, light, cast):
 
 def sees(pose, half, light, reached):
     """(N,) bool: what of `reached` lies in the frame."""
-    local = (light.places - pose[:3, 3]) @ pose[:3, :3]
-    depth = -local[:, 2]
-    return reached & (depth > 0) & (np.abs(local[:, 0]) < depth * half[0]) & (np.abs(local[:, 1]) < depth * half[1])
+    return reached & _in_frame(pose[:3, :3].T, light.places - pose[:3, 3], half)
+
+
+def _in_frame(to_view, way, half):
+    """(..., N) bool: what lies that way, (N, 3), from a view is in its frame. to_view: (..., 3, 3), of each view."""
+    x, y, z = np.moveaxis(to_view @ way.T, -2, 0)
+    return (np.abs(x) < -z * half[0]) & (np.abs(y) < -z * half[1])
 
 
 def _free_places(light, cast, rng):
@@ -215,3 +228,6 @@ def _cosine(normals, rng):
     found = (side * (radius * np.cos(angle))[:, None] + np.cross(normals, side) * (radius * np.sin(angle))[:, None]
              + normals * np.sqrt(1 - radius**2)[:, None])
     return found / np.linalg.norm(found, axis=1)[:, None]
+
+
+TO_VIEWS = np.array([looking(np.zeros(3), direction)[:3, :3].T for direction in DIRECTIONS], np.float32)  # turns, to each of them

@@ -4,9 +4,10 @@ before them. EEVEE keeps no more of a world than its mean and the way it leans (
 
 import numpy as np
 
+from ..light import images
 from . import materials, nodes
 
-ROWS = 512                 # of a picture of the surroundings that are looked at, and twice as many columns
+ROWS = 512                 # that a picture of the surroundings is read as, and twice as many columns
 
 _known = {}                # what harmonics() found, by what it depends on
 
@@ -48,44 +49,24 @@ def _of_image(sky, sun_threshold):
     image = sky.image
     key = image.session_uid, *image.size, image.filepath, image.colorspace_settings.name, *sky.color, sun_threshold
     if key not in _known:
-        radiance = _radiance(image)
-        _known[key] = None if radiance is None else harmonics(radiance * sky.color, sun_threshold)
+        # EEVEE makes a sun of what is brighter than its threshold, which then casts shadows and is none of ours.
+        found = images.means(image, 2 * ROWS, ROWS, sky.color, sun_threshold)
+        _known[key] = None if found is None else harmonics(found[..., :3])
     if _known[key] is None:
         return None
     mean, lean = _known[key][:1], _known[key][1:]
     return np.concatenate([mean, sky.to_world @ lean])
 
 
-def harmonics(radiance, sun_threshold):
+def harmonics(radiance):
     """(4, 3) float64: by how much surroundings light a white surface with normal n, found[0] + n @ found[1:], as radiance.
 
-    radiance: (rows, columns, 3), W sr^-1 m^-2, equirectangular, the lowest row first. sun_threshold: EEVEE makes a sun of
-    what is brighter in any channel, which then casts shadows and is none of ours; 0 for none. A lobe of cosines keeps all
-    of the mean, and 2/3 of the first order."""
+    radiance: (rows, columns, 3), W sr^-1 m^-2, equirectangular, the lowest row first. A lobe of cosines keeps all of the mean, and 2/3
+    of the first order."""
     rows, columns = radiance.shape[:2]
-    if sun_threshold > 0:
-        radiance = radiance * np.minimum(1, sun_threshold / np.maximum(np.abs(radiance).max(-1, keepdims=True), 1e-8))
     up = (np.arange(rows) + 0.5) / rows * np.pi - np.pi / 2
     around = np.pi - (np.arange(columns) + 0.5) / columns * 2 * np.pi
     share = np.cos(up) / (np.cos(up).sum() * columns)  # of the sphere, of a pixel in each row
     in_rows = np.einsum("r,rcx->rx", share, radiance)
     leaning = [np.einsum("r,rcx,c->x", share * np.cos(up), radiance, turn(around)) for turn in (np.cos, np.sin)]
     return np.array([in_rows.sum(0), *(2 * each for each in leaning), 2 * np.sin(up) @ in_rows])
-
-
-def _radiance(image):
-    """(rows, columns, 3) float64, the lowest row first: every so many pixels of an image; None where it has none, or where
-    their colours are neither linear nor sRGB."""
-    width, height = image.size
-    encoding = image.colorspace_settings.name
-    if not width or image.channels < 3 or not (image.is_float or encoding in {"sRGB", "Linear Rec.709", "Non-Color"}):
-        return None
-    pixels = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(pixels)
-    pixels = pixels.reshape(height, width, image.channels)
-    found = pixels[::max(1, height // ROWS), ::max(1, width // (2 * ROWS)), :3].astype(float)
-    if not np.isfinite(found).all():
-        return None
-    if image.is_float or encoding != "sRGB":
-        return found
-    return np.where(found <= 0.04045, found / 12.92, ((found + 0.055) / 1.055) ** 2.4)

@@ -31,7 +31,7 @@ def stamps(scene):
 @persistent
 def follow_edits(scene, depsgraph):
     """Blender has evaluated what was edited."""
-    if depsgraph.mode == "RENDER" or not scene.afterlight.use_viewport:
+    if depsgraph.mode == "RENDER" or not (scene.afterlight.enabled and scene.afterlight.use_viewport):
         return
     changed = [update.id.original for update in depsgraph.updates if update.id.id_type != "SCENE"  # which is said of any setting
                and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)]
