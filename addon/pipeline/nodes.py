@@ -13,7 +13,6 @@ themselves, so what a user moves, renames or deletes is never restored from a re
 
 from .roles import MARK, is_helper
 
-MUTED = "afterlight_muted"  # custom property of light nodes that we muted because their picture is
 KINDS = {"add": {"ShaderNodeMix"}, "gloss": {"ShaderNodeMix"}, "denoise": {"CompositorNodeDenoise"},
          "lines": {"CompositorNodeAlphaOver"},
          "light": {"CompositorNodeRLayers"}, "request": {"CompositorNodeRLayers"}, "view": {"CompositorNodeRLayers"},
@@ -39,8 +38,8 @@ def all_nodes(tree):
 
 
 def role(node):
-    """"add", "light", "gloss", "denoise", "lines", "view", "request", "plain" (an ordinary node in a tree we made), or None for the user's own:
-    a mark on a node that can't have that role is not ours."""
+    """One of KINDS, or None for the user's own: a mark on a node that can't have that role is not ours. "plain" is an ordinary node in
+    a tree that we made."""
     kind = node.get(MARK)
     if not isinstance(kind, str) or node.bl_idname not in KINDS.get(kind, ()):
         return None
@@ -230,26 +229,6 @@ def retarget(tree, scene, old, helper):
                 light.layer = picture.layer
 
 
-def follow_mutes(tree, scene):
-    """Where a picture of `scene` is muted, by its node or by its link, mute its light as well: no light without its picture. Whoever
-    used the picture then gets what it would get without us, the value of its own socket."""
-    for node in tree.nodes:
-        for identifier in {"add": (B,), "gloss": (A, B), "denoise": ("Image",)}.get(role(node), ()):
-            assign(socket(node.inputs, identifier), "default_value", (0.0, 0.0, 0.0, 0.0 if identifier == A else 1.0))
-    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
-        link = socket(add.inputs, A).links[0]
-        users = _users(socket(add.outputs, RESULT))
-        assign(link.to_socket, "default_value", _as_color(users[0]) if users else (0.0, 0.0, 0.0, 0.0))
-        light, is_muted = light_of(add), link.is_muted or link.from_node.mute
-        if light is None or role(light) != "light":
-            continue
-        if is_muted and not light.mute:
-            light.mute = light[MUTED] = True
-        elif not is_muted and MUTED in light:
-            light.mute = False
-            del light[MUTED]
-
-
 def source(node, identifier):
     """The node that an input is linked to, or None."""
     return next((link.from_node for link in socket(node.inputs, identifier).links), None)
@@ -264,19 +243,6 @@ def assign(data, name, value):
     old = getattr(data, name)
     if (tuple(old) != tuple(value)) if hasattr(old, "__len__") and not isinstance(old, str) else old != value:
         setattr(data, name, value)
-
-
-def _users(output):
-    """The inputs that take an output, those of the user behind nodes of ours."""
-    return [user for link in output.links for user in
-            (_users(link.to_node.outputs["Image"]) if role(link.to_node) == "lines" else [link.to_socket])]
-
-
-def _as_color(socket):
-    """The value that an input has where nothing is linked to it, as a colour."""
-    value = getattr(socket, "default_value", 0.0)
-    channels = tuple(value) if hasattr(value, "__len__") and not isinstance(value, str) else (value,) * 3
-    return (*channels[:3], channels[3] if len(channels) > 3 else 1.0) if len(channels) > 2 else (0.0, 0.0, 0.0, 0.0)
 
 
 def _light_for(tree, picture, helper):

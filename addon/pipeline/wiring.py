@@ -4,7 +4,7 @@
 import bpy
 
 from ..translations import say
-from . import between, layer_passes, lines, nodes, own_tree, passes, rendering, roles, views, world
+from . import between, layer_passes, lines, mutes, nodes, own_tree, passes, rendering, roles, views, world
 from .roles import HELPER, is_helper, source
 
 ENGINE = "AFTERLIGHT"
@@ -78,7 +78,7 @@ def follow(scene):
     views.follow(scene)
     for group in nodes.trees(scene.compositing_node_group):
         nodes.retarget(group, scene, helper, helper)
-        nodes.follow_mutes(group, scene)
+        mutes.follow(group, scene)
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
         nodes.assign(mirror, "use", layer.use and layer.name in lit)
