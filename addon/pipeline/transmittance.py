@@ -128,16 +128,19 @@ def _merged(values, by):
 
 def _interpolated(grid, at):
     """(N, 3) of a grid (rows, columns, layers, 3) at places given in cells, linearly between their middles."""
-    first, share = [], []
+    low, share = [], []
     for place, side in zip(at, grid.shape):
-        place = np.clip(place, 0, side - 1)
-        first.append(np.minimum(place.astype(int), max(side - 2, 0)))
-        share.append(place - first[-1])
-    total = 0.0
+        place = np.clip(place, 0, side - 1).astype(np.float32)
+        low.append(np.minimum(place.astype(np.int32), max(side - 2, 0)))
+        share.append(place - low[-1])
+    flat, total = grid.reshape(-1, 3).astype(np.float32), np.zeros((low[0].size, 3), np.float32)
     for corner in np.ndindex(2, 2, 2):
-        index = tuple(np.minimum(low + step, side - 1) for low, step, side in zip(first, corner, grid.shape))
-        weight = np.prod([part if step else 1 - part for part, step in zip(share, corner)], axis=0)
-        total = total + weight[:, None] * grid[index]
+        index, weight = np.zeros_like(low[0]), np.ones_like(share[0])
+        for axis, step in enumerate(corner):
+            side = grid.shape[axis]
+            index = index * side + (np.minimum(low[axis] + 1, side - 1) if step else low[axis])
+            weight = weight * (share[axis] if step else 1 - share[axis])
+        total += weight[:, None] * flat[index]
     return total
 
 
