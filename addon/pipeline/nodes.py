@@ -55,7 +55,7 @@ def shows(node, scene):
 
 def pictures(tree, scene):
     """The Render Layers nodes that bring the plain picture of `scene` into the tree or its groups."""
-    return [node for node in all_nodes(tree) if shows(node, scene)]
+    return [node for node in all_nodes(tree) if shows(node, scene) and "Image" in node.outputs]
 
 
 def uses_light(tree, scene, helper):
@@ -101,7 +101,7 @@ def lost_image(tree, scene, helper):
     """View layers whose adding node is gone together with the links it had: nobody uses their image any more."""
     found = []
     for light in [node for node in tree.nodes if shows(node, helper) and role(node) == "light" and _is_idle(node)]:
-        images = [picture.outputs["Image"] for picture in tree.nodes if _same_layer(picture, light, scene)]
+        images = [picture.outputs["Image"] for picture in pictures(tree, scene) if picture.layer == light.layer]
         if images and not any(image.is_linked for image in images):
             found.append(light.layer)
     return found
@@ -268,11 +268,6 @@ def takes_light(add):
     """The input by which the light comes to an adding node, or to the node that adds the glossy light before it."""
     node = source(add, B)
     return socket(node.inputs, A) if node and role(node) == "gloss" else socket(add.inputs, B)
-
-
-def _same_layer(picture, light, scene):
-    return (picture.bl_idname == light.bl_idname and picture.layer == light.layer
-            and picture.scene == scene)
 
 
 def summing(tree, kind, name):
