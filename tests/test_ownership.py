@@ -241,6 +241,7 @@ GARBAGE = {
     "far away": {"poses": [1, 0, 0, 1e30, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.0], "coverage": [0.5, 0.9], "clearance": 0.1},
     "not a number": {"poses": [float("nan")] * 16, "coverage": [0.5, 0.9], "clearance": 0.1},
     "no clearance": {"poses": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.0], "coverage": [0.5, 0.9], "clearance": -1.0},
+    "one number": {"poses": [], "coverage": -4.5e16, "clearance": 1.0}, "no share": {"poses": [], "coverage": [7.0], "clearance": 1.0},
     "too many": {"poses": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.0] * 1000, "coverage": [0.5] * 1001, "clearance": 1.0},
 }
 

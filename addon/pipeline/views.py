@@ -247,11 +247,11 @@ def _read_placed(stored):
     """placement.Placement of what a file holds, None where that is no placement: anybody may have written it."""
     try:
         poses = np.array(stored["poses"], float).reshape(-1, 4, 4)
-        coverage, clearance = np.array(stored["coverage"], float), float(stored["clearance"])
+        coverage, clearance = np.array(stored["coverage"], float).ravel(), float(stored["clearance"])
     except (TypeError, KeyError, ValueError, AttributeError):
         return None
     turns = poses[:, :3, :3].clip(-2, 2)
-    is_sound = (len(poses) <= MOST and len(coverage) == len(poses) + 1 and np.isfinite(coverage).all()
+    is_sound = (len(poses) <= MOST and len(coverage) == len(poses) + 1 and (np.abs(coverage - 0.5) < 0.51).all()
                 and 0 < clearance < FARTHEST and (np.abs(poses[:, :3, 3]) < FARTHEST).all()
                 and np.allclose(turns @ turns.transpose(0, 2, 1), np.eye(3), atol=1e-3)
                 and np.array_equal(poses[:, 3], np.tile((0.0, 0, 0, 1), (len(poses), 1))))
