@@ -92,7 +92,7 @@ def after_render(*_):
     turns.surely(_end)
     waited = rendering.end()
     if waited:
-        turns.after_render(lambda: _catch_up(waited))
+        turns.later(lambda: turns.after_render(lambda: _catch_up(waited)))
 
 
 def _catch_up(waited):

@@ -7,7 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import light
-from ..pipeline import checks, events, roles, status
+from ..pipeline import checks, events, roles, status, turns
 from ..translations import say
 from . import changes, screen
 from .further import Further
@@ -38,8 +38,7 @@ def switched(scene):
 
 def redraw():
     """Have all viewports drawn again."""
-    for area in _areas():
-        area.tag_redraw()
+    turns.later(lambda: [area.tag_redraw() for area in _areas()])  # a script may set something in the thread of a render
 
 
 def is_lit(scene, space):
