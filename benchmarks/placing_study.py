@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What placing views costs, and how much of the light they then see, without any render.
 
-    .venv/bin/python -m benchmarks.placing_study [FILE.blend or case of views_limits ...] [--seeds 3] [--places N] [--points N]
+    .venv/bin/python -m benchmarks.placing_study [FILE.blend or case of views_limits ...] [--seeds 3] [--places N]
+    [--points N]
 
-Prints a table: the processor's seconds to read the scene into a tree, to follow paths, and to choose places (the least of all
-seeds), and the share of light that all views see, mean and standard error over the seeds, told by paths that they were not placed by.
-The passes of the main view are made by rays, 160 x 90."""
+Prints a table: the processor's seconds to read the scene into a tree, to follow paths, and to choose places (the least
+of all seeds), and the share of light that all views see, mean and standard error over the seeds, told by paths that
+they were not placed by. The passes of the main view are made by rays, 160 x 90."""
 
 import argparse
 import time
@@ -90,7 +91,8 @@ def main():
     parser.add_argument("--points", type=int, default=placement.CHOOSING_POINTS)
     wanted = parser.parse_args()
     placement.PLACES, placement.CHOOSING_POINTS = wanted.places, wanted.points
-    print("| scene | reading, s | paths, s | choosing, s | seen | standard error | views |\n|---|---|---|---|---|---|---|")
+    print("| scene | reading, s | paths, s | choosing, s | seen | standard error | views |\n"
+          "|---|---|---|---|---|---|---|")
     for name in wanted.scenes:
         print(study(name, wanted.seeds), flush=True)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shrink: the means of a picture over the cells of a grid, times a colour. What is then brighter than a limit, in any channel, is made as
-// bright as that first.
+// Shrink: the means of a picture over the cells of a grid, times a colour. What is then brighter than a limit, in any
+// channel, is made as bright as that first.
 
 void main()
 {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's images, read as small as they are needed. EEVEE has them on the GPU; their pixels as numbers would take 16 bytes each."""
+"""Blender's images, read as small as they are needed. EEVEE has them on the GPU; their pixels as numbers would take 16
+bytes each."""
 
 import gpu
 import numpy as np
@@ -9,11 +10,12 @@ from . import device
 
 @device.on_gpu
 def means(image, width, height, color=(1, 1, 1), limit=0.0):
-    """(rows, columns, 4) float64, the lowest row first: means of an image's pixels, scene linear as EEVEE has them, over a grid of width x
-    height, or of the image's own size where it is smaller. None where it has no colours, or some that are no numbers.
+    """(rows, columns, 4) float64, the lowest row first: means of an image's pixels, scene linear as EEVEE has them,
+    over a grid of width x height, or of the image's own size where it is smaller. None where it has no colours, or
+    some that are no numbers.
 
-    color: (3,), which they are multiplied by first. limit: what is brighter then, in any channel, counts as that; 0 for none.
-    Raises device.GpuUnavailable."""
+    color: (3,), which they are multiplied by first. limit: what is brighter then, in any channel, counts as that; 0
+    for none. Raises device.GpuUnavailable."""
     if not all(image.size) or image.channels < 3:
         return None
     try:

@@ -10,8 +10,8 @@ from . import materials, stand_in
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """solids: [Solid]. which: (N,) int, of the instances: indices of solids. to_world: (N, 4, 4), their matrices. looks: [materials.Look],
-    of what the solids are made of. lamps: [(light, (4, 4) matrix)]."""
+    """solids: [Solid]. which: (N,) int, of the instances: indices of solids. to_world: (N, 4, 4), their matrices.
+    looks: [materials.Look], of what the solids are made of. lamps: [(light, (4, 4) matrix)]."""
 
     solids: list
     which: np.ndarray
@@ -21,7 +21,8 @@ class Found:
 
 
 def read(depsgraph):
-    """Found of what EEVEE draws and does not see through. The solids and lamps must not outlive the depsgraph's evaluation."""
+    """Found of what EEVEE draws and does not see through. The solids and lamps must not outlive the depsgraph's
+    evaluation."""
     which, known, solids, looks, lamps = [], {}, [], _Looks(), []
     for instance in depsgraph.object_instances:
         thing = instance.object
@@ -93,7 +94,8 @@ class Solid:
         if len(self._looks) < 2 or slots is None:
             return points, triangles, np.full(len(triangles), self._looks[0])
         slots = _array(slots.data, "value", len(mesh.polygons), np.int32)
-        return points, triangles, self._looks[np.clip(slots[polygons if faces is None else faces[polygons]], 0, len(self._looks) - 1)]
+        slots = slots[polygons if faces is None else faces[polygons]]
+        return points, triangles, self._looks[np.clip(slots, 0, len(self._looks) - 1)]
 
 
 def _array(collection, name, count, kind, width=1):

@@ -2,8 +2,8 @@
 """Rays through the evaluated scene of a render, and a rough idea of the light on what they hit.
 
 Only an evaluated depsgraph that belongs to us may be asked during a render: Blender's own ray cast of a scene asks that
-of the window, and leaves out the scene behind a background set. So all meshes are read (meshes.py), simplified where they are
-many or heavy (stand_in.py), into one tree: a ray is one call, however much is in the scene.
+of the window, and leaves out the scene behind a background set. So all meshes are read (meshes.py), simplified where
+they are many or heavy (stand_in.py), into one tree: a ray is one call, however much is in the scene.
 """
 
 import numpy as np
@@ -21,7 +21,8 @@ class Geometry:
     def __init__(self, depsgraph):
         found = meshes.read(depsgraph)
         self.lamps = [Lamp(*each) for each in found.lamps]
-        self._albedo, self._emission = (np.array([getattr(look, name) for look in found.looks]) for name in ("albedo", "emission"))
+        self._albedo = np.array([look.albedo for look in found.looks])
+        self._emission = np.array([look.emission for look in found.looks])
         points, triangles, self._looks = stand_in.triangles(found)
         self._tree = BVHTree.FromPolygons(points.tolist(), triangles.tolist(), all_triangles=True)
 
@@ -29,7 +30,8 @@ class Geometry:
         """As placement.py has it. The thing is for look()."""
         distance, normal = np.full(len(origins), np.inf), np.zeros((len(origins), 3))
         thing = np.full(len(origins), -1)
-        rays = (np.asarray(each, float).tolist() for each in (origins, directions, np.minimum(limits, stand_in.FARTHEST)))
+        limits = np.minimum(limits, stand_in.FARTHEST)
+        rays = (np.asarray(each, float).tolist() for each in (origins, directions, limits))
         found = list(map(self._tree.ray_cast, *rays))
         hit = [index for index, (_, _, triangle, _) in enumerate(found) if triangle is not None]
         if hit:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A stand-in of few triangles for all meshes of a scene, for rays that need no detail. Arrays only; no Blender.
 
-A fixed number of triangles is shared out by size. A mesh that gets fewer than it has is simplified by vertex clustering: all
-vertices in a cell of a grid become one. Of more instances than can be had in any shape a random sample stands for all, drawn
-as often as they are large, and scaled up to the area of those that it stands for.
+A fixed number of triangles is shared out by size. A mesh that gets fewer than it has is simplified by vertex
+clustering: all vertices in a cell of a grid become one. Of more instances than can be had in any shape a random sample
+stands for all, drawn as often as they are large, and scaled up to the area of those that it stands for.
 """
 
 import numpy as np
@@ -49,8 +49,8 @@ def sample(areas):
 
 
 def shares(counts, uses, lengths):
-    """(M,) triangles that each of the meshes gets. counts: (M,), how many it has. uses: (M,), instances of it. lengths: (M,), of the
-    longest instance."""
+    """(M,) triangles that each of the meshes gets. counts: (M,), how many it has. uses: (M,), instances of it.
+    lengths: (M,), of the longest instance."""
     lengths = np.maximum(lengths, 1e-30)
     return np.maximum(np.minimum(counts, _level(counts * uses, lengths * uses, TRIANGLES) * lengths), FEWEST)
 
@@ -58,12 +58,13 @@ def shares(counts, uses, lengths):
 def simplified(points, corners, starts, box, most):
     """(points (V, 3), triangles (T, 3), the polygon of each (T,)): at most `most` triangles of a mesh, or all.
 
-    points: (P, 3) float32. corners: (C,), indices of points, polygon by polygon. starts: (N,), the first corner of each polygon.
-    box: (2, 3), what holds the points."""
+    points: (P, 3) float32. corners: (C,), indices of points, polygon by polygon. starts: (N,), the first corner of
+    each polygon. box: (2, 3), what holds the points."""
     if len(corners) - 2 * len(starts) <= most:
         return points, *_fans(corners, starts)
     x, y, z = box[1] - box[0]
-    cell = max((4 * (x * y + y * z + z * x) / most) ** 0.5, max(x, y, z) / most) or 1.0  # were the surface that of the box
+    # As many cells as triangles, were the surface that of the box.
+    cell = max((4 * (x * y + y * z + z * x) / most) ** 0.5, max(x, y, z) / most) or 1.0
     points, triangles, polygons = _clustered(points, corners, starts, box, cell)
     while len(triangles) > most:
         cell *= 1.4
@@ -92,7 +93,8 @@ def _clustered(points, corners, starts, box, cell):
 
 
 def _fans(corners, starts):
-    """(triangles (T, 3), the polygon of each (T,)) about the first corners of polygons, but those that have a corner twice."""
+    """(triangles (T, 3), the polygon of each (T,)) about the first corners of polygons, but those that have a corner
+    twice."""
     ends = np.append(starts[1:], len(corners))
     second = np.flatnonzero(corners[1:] != corners[:-1])  # few are left of a mesh whose points have become one
     polygons = np.searchsorted(starts, second, "right") - 1
@@ -104,7 +106,8 @@ def _fans(corners, starts):
 
 
 def _level(limits, parts, total):
-    """The largest number L for which the sum of min(limits, L * parts) is at most `total`. limits, parts: (N,), above 0."""
+    """The largest number L for which the sum of min(limits, L * parts) is at most `total`. limits, parts: (N,), above
+    0."""
     if limits.sum() <= total:
         return np.inf
     at = limits / parts
