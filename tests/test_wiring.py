@@ -189,6 +189,22 @@ def test_deleting_the_helper_scene_is_noticed_and_repaired(scene, wiring):
     assert not differences(before, after)
 
 
+@pytest.mark.parametrize("helper_deleted", [False, True])
+@pytest.mark.parametrize("kind", TREES)
+def test_a_tree_that_the_user_has_taken_out_of_use_is_cleared_too(scene, kind, helper_deleted):
+    tree = TREES[kind](scene)
+    if tree:
+        tree.use_fake_user = True
+    scene.afterlight.enabled = True
+    scene.compositing_node_group = None
+    if helper_deleted:
+        bpy.data.cameras.remove(scene.afterlight.helper.camera.data)
+        bpy.data.scenes.remove(scene.afterlight.helper)
+    scene.afterlight.enabled = False
+    assert not [node for each in bpy.data.node_groups for node in ours(each)]
+    assert tree is None or tree.links
+
+
 @pytest.mark.parametrize("other_ticked", [False, True])
 def test_deleting_the_scene_takes_its_helper_along(scene, tmp_path, other_ticked):
     """At the latest when the file is saved: while Blender evaluates another scene it can't go without a crash."""
@@ -200,6 +216,7 @@ def test_deleting_the_scene_takes_its_helper_along(scene, tmp_path, other_ticked
     other.afterlight.enabled = False
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert not helpers() and not [each for each in bpy.data.cameras if each.name.startswith(".Afterlight")]
+    assert not [each for each in bpy.data.node_groups if ours(each) or each.keys()]
 
 
 def test_view_layers_added_removed_and_renamed(scene, wiring):

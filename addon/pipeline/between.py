@@ -28,11 +28,11 @@ def splice_gloss(tree, scene, helper):
             tree.links.new(light.outputs[GLOSSY_PASS], socket(gloss.inputs, B))
 
 
-def unsplice_gloss(tree, helper):
-    """Take out what splice_gloss() put in."""
+def unsplice_gloss(tree, helpers):
+    """Take out what splice_gloss() put in. helpers: as nodes.unsplice() has them."""
     for gloss in [node for node in tree.nodes if role(node) == "gloss"]:
         light = source(gloss, B)
-        if light is None or light.scene in (helper, None):
+        if light is None or light.scene in helpers:
             given = next((link.from_socket for link in socket(gloss.inputs, A).links), None)
             users = [link.to_socket for link in socket(gloss.outputs, RESULT).links]
             tree.nodes.remove(gloss)
@@ -61,11 +61,11 @@ def splice_denoise(tree, scene):
             denoise.location = add.location[0] - 40, add.location[1] - 260
 
 
-def unsplice_denoise(tree, helper):
-    """Take out what splice_denoise() put in."""
+def unsplice_denoise(tree, helpers):
+    """Take out what splice_denoise() put in. helpers: as nodes.unsplice() has them."""
     for denoise in [node for node in tree.nodes if role(node) == "denoise"]:
         light = source(denoise, "Image")
-        if light is None or light.scene in (helper, None):
+        if light is None or light.scene in helpers:
             given = next((link.from_socket for link in denoise.inputs["Image"].links), None)
             users = [link.to_socket for link in denoise.outputs["Image"].links]
             tree.nodes.remove(denoise)

@@ -40,8 +40,8 @@ def follow_all(*_):
         return
     for scene in _lit_scenes():
         wiring.follow(scene)
-    for scene in roles.orphans():
-        roles.remove(scene)
+    for orphan in roles.orphans():
+        wiring.remove_orphan(orphan)
     relight.forget_deleted()
 
 

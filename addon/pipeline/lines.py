@@ -68,7 +68,7 @@ def unsplice(tree, scene):
     for over in [node for node in tree.nodes if role(node) == "lines"]:
         add = source(over, UNDER)
         picture = source(add, A) if add and role(add) == "add" else None
-        if picture is None or picture.scene == scene and not is_wanted(scene, picture.layer):
+        if picture is None or picture.scene is None or picture.scene == scene and not is_wanted(scene, picture.layer):
             under = next((link.from_socket for link in over.inputs[UNDER].links), None)
             users = [(link.to_socket, link.is_muted) for link in over.outputs["Image"].links]
             tree.nodes.remove(over)

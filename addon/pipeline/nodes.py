@@ -130,9 +130,10 @@ def splice(tree, picture, helper):
     light.location = (x, y - 330)
 
 
-def unsplice(tree, scene, helper):
-    """Take out what splice() put in for `scene`, and give its users the plain image again."""
-    lights = [node for node in tree.nodes if role(node) in {"light", "request"} and node.scene in (helper, None)]
+def unsplice(tree, scene, helpers):
+    """Take out what splice() put in for `scene`, and give its users the plain image again. helpers: the scenes whose light it was; None
+    among them stands for those that have been deleted."""
+    lights = [node for node in tree.nodes if role(node) in {"light", "request"} and node.scene in helpers]
     for add in [node for node in tree.nodes if role(node) == "add"]:
         light, picture = source(add, B), source(add, A)
         if (light in lights) if light else (picture is None or shows(picture, scene)):

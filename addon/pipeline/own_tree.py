@@ -90,6 +90,14 @@ def restore(scene):
     settings.compositing_was_off = False
 
 
+def remove_orphans():
+    """Remove trees of ours whose scene has been deleted, where nobody has come to use them."""
+    named = {scene.afterlight.own_tree for scene in bpy.data.scenes}
+    for tree in [tree for tree in bpy.data.node_groups if tree.get(MARK) == TREE and tree not in named and tree.library is None]:
+        if not tree.users and _holds_only_ours(tree):
+            bpy.data.node_groups.remove(tree)
+
+
 def _holds_only_ours(tree):
     return all(map(nodes.role, tree.nodes))
 

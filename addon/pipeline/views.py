@@ -74,13 +74,9 @@ def connect(scene, tree, helper):
 
 
 def disconnect(scene):
-    """Take out all that connect() put in."""
-    settings = scene.afterlight
+    """Take out the scenes that connect() put in."""
     ours = [*roles.own(scene, SCOUT), *roles.own(scene, VIEW)]
-    for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
-        for node in [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in (*ours, None)]:
-            tree.nodes.remove(node)
-    settings.view_scenes.clear()
+    scene.afterlight.view_scenes.clear()
     for each in ours:
         roles.remove(each)
 

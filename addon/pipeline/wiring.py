@@ -34,13 +34,13 @@ def connect(scene):
         if wants_gloss(scene):
             between.splice_gloss(group, scene, helper)
         else:
-            between.unsplice_gloss(group, helper)
+            between.unsplice_gloss(group, (helper, None))
     follow(scene)
     for group in nodes.trees(tree):  # now that the passes are on which the Denoise node gets
         if wants_denoise(scene):
             between.splice_denoise(group, scene)
         else:
-            between.unsplice_denoise(group, helper)
+            between.unsplice_denoise(group, (helper, None))
         lines.splice(group, scene)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated.
     helper.view_layers[0].update()
@@ -106,20 +106,27 @@ def disconnect(scene):
         return
     adopt(scene)
     settings, helpers = scene.afterlight, roles.own(scene, HELPER)
-    helper = helpers[0] if helpers else None
-    views.disconnect(scene)
-    for tree in {scene.compositing_node_group, settings.set_aside, settings.own_tree} - {None}:
-        for group in nodes.trees(tree):
-            lines.unsplice(group, scene)
-            between.unsplice_denoise(group, helper)
-            between.unsplice_gloss(group, helper)
-            nodes.unsplice(group, scene, helper)
+    ours = [*helpers, *roles.own(scene, roles.SCOUT), *roles.own(scene, roles.VIEW)]
+    in_use = [group for tree in (scene.compositing_node_group, settings.set_aside, settings.own_tree) for group in nodes.trees(tree)]
+    of_others = {group for other in bpy.data.scenes if other != scene and other.afterlight.enabled
+                 for group in nodes.trees(other.compositing_node_group)}
+    for tree in _compositor_trees():  # the user may have taken another than the one in which we put nodes
+        _clear(tree, scene, ours if tree in of_others and tree not in in_use else [*ours, None])
     own_tree.restore(scene)
     for layer in scene.view_layers:
         layer_passes.switch(scene, layer, ())
     settings.helper = None
+    views.disconnect(scene)
     for each in helpers:
         roles.remove(each)
+
+
+def remove_orphan(orphan):
+    """Remove a scene of ours whose lit scene has been deleted, and the nodes that show it."""
+    for tree in _compositor_trees():
+        _clear(tree, None, [orphan])
+    roles.remove(orphan)
+    own_tree.remove_orphans()
 
 
 def adopt(scene):
@@ -193,6 +200,20 @@ def add_picture(scene):
     """Add a Render Layers node of `scene` to the top level of its compositor, the user's own from then on."""
     nodes.picture_node(scene.compositing_node_group, scene).location = (-400, 0)
     connect(scene)
+
+
+def _compositor_trees():
+    return [tree for tree in bpy.data.node_groups if tree.bl_idname == "CompositorNodeTree" and tree.library is None]
+
+
+def _clear(tree, scene, ours):
+    """Take our nodes for `scene` out of one tree. ours: our scenes that they show; None among them stands for deleted ones."""
+    lines.unsplice(tree, scene)
+    between.unsplice_denoise(tree, ours)
+    between.unsplice_gloss(tree, ours)
+    nodes.unsplice(tree, scene, ours)
+    for node in [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours]:
+        tree.nodes.remove(node)
 
 
 def _own_helper(scene):
