@@ -112,8 +112,8 @@ def splice(tree, picture, helper):
     for add in [add for add in without_picture(tree, helper) if light_of(add).layer == picture.layer]:
         tree.links.new(picture.outputs["Image"], socket(add.inputs, A))
     for link in picture.outputs["Image"].links:
-        if role(link.to_node) == "add" and not source(link.to_node, B):
-            tree.links.new(_light_for(tree, picture, helper).outputs[PASS], socket(link.to_node.inputs, B))
+        if role(link.to_node) == "add" and not lights_way_in(link.to_node).links:
+            tree.links.new(_light_for(tree, picture, helper).outputs[PASS], lights_way_in(link.to_node))
     links = [link for link in picture.outputs["Image"].links if role(link.to_node) != "add"]
     if not links:
         return
@@ -154,8 +154,14 @@ def shows_picture(add, scene):
 
 def light_of(add):
     """The node whose light an adding node adds, before it is denoised and the glossy light comes to it."""
-    node = next((link.from_node for link in takes_light(add).links), None)
-    return source(node, "Image") if node and role(node) == "denoise" else node
+    return next((link.from_node for link in lights_way_in(add).links), None)
+
+
+def lights_way_in(add):
+    """The input of an adding node, or of the first node of ours before it, that takes the light as it was gathered."""
+    taken = takes_light(add)
+    node = next((link.from_node for link in taken.links), None)
+    return socket(node.inputs, "Image") if node and role(node) == "denoise" else taken
 
 
 def light_node(tree, helper, layer, kind="light"):

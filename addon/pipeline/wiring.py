@@ -179,7 +179,7 @@ def faults(scene):
     elif not found and not nodes.uses_light(tree, scene, helper) and not own_tree.is_untouched(scene, tree):
         found[say('The compositor uses the Image of no Render Layers node of "{}", so the light is added to nothing. Link the Image '
                   "of one, or the output Indirect of Afterlight's", scene.name)] = ""
-    elif any(nodes.role(node) == "add" and nodes.shows_picture(node, scene) and not nodes.source(node, nodes.B)
+    elif any(nodes.role(node) == "add" and nodes.shows_picture(node, scene) and not nodes.lights_way_in(node).links
              for node in nodes.all_nodes(tree)):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
     if views.faults(scene):
