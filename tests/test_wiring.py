@@ -189,6 +189,19 @@ def test_deleting_the_helper_scene_is_noticed_and_repaired(scene, wiring):
     assert not differences(before, after)
 
 
+@pytest.mark.parametrize("built_on", [False, True])
+def test_a_tree_of_ours_that_the_user_has_taken_out_of_use(scene, wiring, built_on):
+    scene.afterlight.enabled = True
+    tree = scene.compositing_node_group
+    if built_on:
+        tree.nodes.new("CompositorNodeBlur")
+    scene.compositing_node_group = None
+    wiring.connect(scene)
+    assert (scene.compositing_node_group == tree) != built_on and not wiring.faults(scene)
+    scene.afterlight.enabled = False
+    assert len(bpy.data.node_groups) == int(built_on) and not built_on or not tree.keys() and not ours(tree)
+
+
 @pytest.mark.parametrize("helper_deleted", [False, True])
 @pytest.mark.parametrize("kind", TREES)
 def test_a_tree_that_the_user_has_taken_out_of_use_is_cleared_too(scene, kind, helper_deleted):

@@ -46,8 +46,16 @@ def in_use(scene):
         # A tree that is switched off must not come to life because Afterlight needs the compositor.
         settings.compositing_was_off, settings.set_aside = True, tree
         render.use_compositing = True
-    settings.own_tree = scene.compositing_node_group = _new_tree(scene)
-    return settings.own_tree
+    own = settings.own_tree
+    is_free = own is not None and not _is_anothers(own, scene)
+    if is_free and is_untouched(scene, own):  # the user has taken it out of use
+        _link_image(own)
+    else:
+        if is_free and is_ours(scene, own):
+            _hand_over(own)
+        own = _new_tree(scene)
+    settings.own_tree = scene.compositing_node_group = own
+    return own
 
 
 def _new_tree(scene):
@@ -73,19 +81,16 @@ def _link_image(tree):
 def restore(scene):
     """Give `scene` its own tree back and remove ours, unless the user has built on it."""
     settings, own = scene.afterlight, scene.afterlight.own_tree
-    shared = any(other != scene and other.compositing_node_group == own for other in bpy.data.scenes)
     if is_ours(scene, own):
+        shared = any(other != scene and other.compositing_node_group == own for other in bpy.data.scenes)
         if not shared and is_untouched(scene, own) and not _is_in_a_group(own):
             if scene.compositing_node_group == own:
                 scene.compositing_node_group = settings.set_aside
                 if settings.compositing_was_off:
                     scene.render.use_compositing = False
             bpy.data.node_groups.remove(own)
-        elif not shared:  # the user has built on it: from now on it is theirs
-            del own[MARK]
-            for node in own.nodes:
-                if nodes.role(node) == "plain":
-                    del node[MARK]
+        elif not shared:
+            _hand_over(own)
     settings.own_tree = settings.set_aside = None
     settings.compositing_was_off = False
 
@@ -100,6 +105,19 @@ def remove_orphans():
 
 def _holds_only_ours(tree):
     return all(map(nodes.role, tree.nodes))
+
+
+def _hand_over(tree):
+    """The user has built on a tree of ours: from now on it is theirs."""
+    del tree[MARK]
+    for node in tree.nodes:
+        if nodes.role(node) == "plain":
+            del node[MARK]
+
+
+def _is_anothers(tree, scene):
+    """Whether a tree that `scene` names is another scene's: of a copy the original's."""
+    return any(other != scene and tree in (other.compositing_node_group, other.afterlight.own_tree) for other in bpy.data.scenes)
 
 
 def _is_in_a_group(tree):
