@@ -206,11 +206,12 @@ def test_deleted_view_scenes_and_nodes_are_noticed_and_repaired(scene, wiring, v
     assert not wiring.faults(scene) and len(views.scenes(scene)) == 7
 
 
-def test_deleting_the_scene_takes_its_views_along(scene):
+def test_deleting_the_scene_takes_its_views_along(scene, tmp_path):
     bpy.data.scenes.new("Other")
     scene.afterlight.views, scene.afterlight.enabled = "AUTOMATIC", True
     bpy.data.scenes.remove(scene)
     bpy.context.view_layer.update()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert [each.name for each in bpy.data.scenes] == ["Other"]
 
 
