@@ -26,16 +26,16 @@ samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
 
 bench: package   ## what it costs: beside EEVEE, by polygons and lights, and alone on the GPU; an hour at most
-	@status=0; for part in bench constant_cost speed; do $(python) -m benchmarks.$$part || status=1; done; exit $$status
+	@status=0; for part in cost cost.constant_cost gpu; do $(python) -m benchmarks.$$part || status=1; done; exit $$status
 
 speed: setup     ## the last of these: the light alone, pass by pass, on this machine's GPU
-	$(python) -m benchmarks.speed
+	$(python) -m benchmarks.gpu
 
 accuracy: package ## error beside EEVEE's own GI and Cycles, and where it comes from; half an hour the first time
-	$(python) -m benchmarks.accuracy --out docs/accuracy --page docs/accuracy.md
+	$(python) -m benchmarks.accuracy --out docs/measured/accuracy --page docs/measured/accuracy.md
 
 motion: package  ## error, flicker, lag and trails in moving shots; make motion MOTION='pillars --frames 1-8' for less
-	$(python) -m benchmarks.motion --page docs/motion.md --sheet build/motion/sheet.png $(MOTION)
+	$(python) -m benchmarks.motion --page docs/measured/motion.md --sheet build/motion/sheet.png $(MOTION)
 
 soak: package    ## 300 frames in one process: does memory grow, does anything stay behind? Half an hour; needs Linux
 	$(python) -m benchmarks.soak

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Many frames in one process: does anything stay behind?
 
-    .venv/bin/python -m benchmarks.soak [--frames 300] [--updates 300] [--output docs/soak.md]
+    .venv/bin/python -m benchmarks.soak [--frames 300] [--updates 300] [--output docs/measured/soak.md]
 
 A mix of settings, sizes, compositors and view layers, of frames that are lit, lit again, cancelled and refused, over
 and over, with the box ticked and, in a process of its own, never ticked: what Blender itself leaves behind. Prints a
-page of Markdown and writes it to docs/soak.md. Exit code 1 where something stays behind. Needs Linux, which tells a
-process its memory."""
+page of Markdown and writes it to docs/measured/soak.md. Exit code 1 where something stays behind. Needs Linux, which
+tells a process its memory."""
 
 import argparse
 import collections
@@ -22,11 +22,11 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "soak.md"
-WARM_UP = 2          # times through the mix before memory counts: shaders, caches, Python's own
+PAGE = ROOT / "docs" / "measured" / "soak.md"
+WARM_UP = 2  # times through the mix before memory counts: shaders, caches, Python's own
 MOST_GROWTH = 0.02
-VIEWS = 2            # at most, further ones of a frame; each keeps a file
-CHANNEL = 160 * 90 * 4   # bytes that an update may leave: less than any array or texture of its frame
+VIEWS = 2  # at most, further ones of a frame; each keeps a file
+CHANNEL = 160 * 90 * 4  # bytes that an update may leave: less than any array or texture of its frame
 
 # One line a frame: picture, compositor of tests/scenes.py ("layered" has two view layers), start, samples, radius and
 # what happens.
@@ -64,6 +64,7 @@ class Soak:
     def run(self, frames, updates, folder):
         """Measurements of so many frames, and of the last lit again so many times, as a dictionary of plain values."""
         import bpy
+
         self._count_textures()
         found = collections.defaultdict(list)
         self._prepare(*MIX[0][:5], "unticked")
@@ -88,7 +89,6 @@ class Soak:
         return found
 
     def _look(self, found):
-        import bpy
         found["textures made"].append(len(self.textures))
         found["textures"].append(self._alive())
         found["descriptors"].append(len(os.listdir("/proc/self/fd")))
@@ -96,9 +96,10 @@ class Soak:
 
     def _frame(self, line, number, folder):
         import bpy
+
         *settings, event = line
         self._prepare(*settings, event)
-        scene, engine, light = self.scene, self.afterlight.pipeline.engine, self.afterlight.light
+        scene, engine, light = self.scene, self.afterlight.render.engine, self.afterlight.gather
         scene.afterlight.seed, scene.afterlight.strength = number, 0.5 + number % 4
         scene.eevee.use_raytracing = event == "ray tracing"
         gathers = light.gather_indirect, light.gather_views
@@ -129,8 +130,10 @@ class Soak:
             scene.compositing_node_group, self.kind = self.trees[kind], kind
             if kind == "layered":
                 scene.view_layers.new("Front")
-                for node, layer in zip([node for node in self.trees[kind].nodes
-                                        if node.bl_idname == "CompositorNodeRLayers"], scene.view_layers):
+                for node, layer in zip(
+                    [node for node in self.trees[kind].nodes if node.bl_idname == "CompositorNodeRLayers"],
+                    scene.view_layers,
+                ):
                     node.layer = layer.name
         scene.render.resolution_x, scene.render.resolution_y = size
         settings.start, settings.samples, settings.radius = start, samples, radius
@@ -161,6 +164,7 @@ class Soak:
         def counted(*arguments, **options):
             self.textures.append(texture(*arguments, **options))
             return self.textures[-1]
+
         device.texture = counted
 
     def _alive(self):
@@ -172,7 +176,10 @@ class Soak:
 def _files():
     """All that lies in Blender's temporary folder, folders as well."""
     import bpy
-    return {os.path.join(folder, name) for folder, folders, files in os.walk(bpy.app.tempdir) for name in (*folders, *files)}
+
+    return {
+        os.path.join(folder, name) for folder, folders, files in os.walk(bpy.app.tempdir) for name in (*folders, *files)
+    }
 
 
 def _resident():
@@ -190,8 +197,9 @@ def _in_use():
 
 def rounds(memory):
     """The median of each time through the mix, whose frames differ in size."""
-    return [statistics.median(memory[first:first + len(MIX)])
-            for first in range(0, len(memory) - len(MIX) + 1, len(MIX))]
+    return [
+        statistics.median(memory[first : first + len(MIX)]) for first in range(0, len(memory) - len(MIX) + 1, len(MIX))
+    ]
 
 
 def growth(values):
@@ -231,9 +239,12 @@ def child(frames, updates, ticked, output):
     """Soak in this process, and write what was found to a file."""
     sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests")]
     import extension
+
     afterlight = extension.start()
     import bpy
+
     import scenes
+
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     start = time.perf_counter()
     scene = scenes.box(bpy.context.scene, samples=1)
@@ -245,8 +256,18 @@ def child(frames, updates, ticked, output):
 def measure(frames, updates, ticked, folder):
     """What a process of its own finds, and how it ends. CalledProcessError, with its output, where that is too soon."""
     output = Path(folder) / f"{'ticked' if ticked else 'unticked'}.json"
-    command = [sys.executable, "-m", "benchmarks.soak", "--child", str(output), "--frames", str(frames),
-               "--updates", str(updates), *([] if ticked else ["--unticked"])]
+    command = [
+        sys.executable,
+        "-m",
+        "benchmarks.soak",
+        "--child",
+        str(output),
+        "--frames",
+        str(frames),
+        "--updates",
+        str(updates),
+        *([] if ticked else ["--unticked"]),
+    ]
     run = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if not output.exists():
         print(run.stdout, file=sys.stderr)
@@ -256,36 +277,62 @@ def measure(frames, updates, ticked, folder):
 
 def page(ticked, unticked, command):
     """What was found, as Markdown."""
+
     def megabytes(memory):
         return f"{memory / 1e6:.0f}"
 
     def row(name, found):
-        memory = [f"{megabytes(settled[0])} | {megabytes(settled[-1])} | {growth(settled)[0]:+.1%}"
-                  for settled in (found["in use"][WARM_UP:], rounds(found["resident"])[WARM_UP:])]
-        counts = (max(found["textures"]), len(found["left over"]), len(found["files left"]),
-                  max(found["descriptors"][-len(MIX):]) - found["descriptors"][0])
+        memory = [
+            f"{megabytes(settled[0])} | {megabytes(settled[-1])} | {growth(settled)[0]:+.1%}"
+            for settled in (found["in use"][WARM_UP:], rounds(found["resident"])[WARM_UP:])
+        ]
+        counts = (
+            max(found["textures"]),
+            len(found["left over"]),
+            len(found["files left"]),
+            max(found["descriptors"][-len(MIX) :]) - found["descriptors"][0],
+        )
         return f"| {name} | {found['seconds'] / 60:.0f} | {' | '.join(map(str, (*memory, *counts)))} |"
 
     updates = ticked["in use by updates"]
     missed = list(faults(ticked))
-    return "\n".join([
-        "# Does anything stay behind?", "",
-        f"Made by `{command}` (`make soak`) on software OpenGL, where the process's memory is the GPU's as well.", "",
-        f"{len(ticked['resident'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",
-        "[benchmarks/soak.py](../benchmarks/soak.py)). Sizes, settings, compositors, one view layer and two;",
-        "ticked and unticked, lit, lit again without EEVEE, cancelled, refused for ray tracing, and without a GPU. The",
-        "other process renders the same with the box never ticked: what grows there is Blender's.", "",
-        "In use is the memory that is resident when all that was freed has been given back, after the last frame of",
-        f"each time through the mix; resident the median of each time as it is. The first {WARM_UP} are warm-up.",
-        "Growth is that over all others, by the medians of their first and last third.", "",
-        "| process | minutes | MB in use after warm-up | at the end | growth | MB resident after warm-up | at the end "
-        "| growth | textures alive after a frame | datablocks left | files left | open files more |", "|---" * 12 + "|",
-        row("ticked", ticked), row("never ticked", unticked), "",
-        *(f"MB in use, each time through the mix, {name}: {', '.join(map(megabytes, found['in use']))}\n"
-          for name, found in (("ticked", ticked), ("never ticked", unticked))),
-        f"Then the light of the last frame is updated {len(updates)} times, without EEVEE and what its memory does:",
-        f"{growth(updates)[1] / 1000:.1f} kB more with each. A channel of that frame is {CHANNEL / 1000:.0f} kB.", "",
-        *(f"**Missed:** {fault}." for fault in missed), *([] if missed else ["Nothing stays behind."]), ""])
+    return "\n".join(
+        [
+            "# Does anything stay behind?",
+            "",
+            f"Made by `{command}` (`make soak`) on software OpenGL, where the process's memory is the GPU's as well.",
+            "",
+            f"{len(ticked['resident'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",
+            "[benchmarks/soak.py](../benchmarks/soak.py)). Sizes, settings, compositors, one view layer and two;",
+            "ticked and unticked, lit, lit again without EEVEE, cancelled, refused for ray tracing, and without "
+            "a GPU. The",
+            "other process renders the same with the box never ticked: what grows there is Blender's.",
+            "",
+            "In use is the memory that is resident when all that was freed has been given back, after the last "
+            "frame of",
+            f"each time through the mix; resident the median of each time as it is. The first {WARM_UP} are warm-up.",
+            "Growth is that over all others, by the medians of their first and last third.",
+            "",
+            "| process | minutes | MB in use after warm-up | at the end | growth | MB resident after warm-up | "
+            "at the end "
+            "| growth | textures alive after a frame | datablocks left | files left | open files more |",
+            "|---" * 12 + "|",
+            row("ticked", ticked),
+            row("never ticked", unticked),
+            "",
+            *(
+                f"MB in use, each time through the mix, {name}: {', '.join(map(megabytes, found['in use']))}\n"
+                for name, found in (("ticked", ticked), ("never ticked", unticked))
+            ),
+            f"Then the light of the last frame is updated {len(updates)} times, without EEVEE and what its memory "
+            "does:",
+            f"{growth(updates)[1] / 1000:.1f} kB more with each. A channel of that frame is {CHANNEL / 1000:.0f} kB.",
+            "",
+            *(f"**Missed:** {fault}." for fault in missed),
+            *([] if missed else ["Nothing stays behind."]),
+            "",
+        ]
+    )
 
 
 def main():

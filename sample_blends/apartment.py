@@ -4,7 +4,7 @@
 from parts import aim, box, camera, diffuse, glowing, light_data, place, quad, render_settings, wall
 
 HEIGHT, DOOR = 2.6, 2.05
-WIDTH, DEPTH = 10.2, 8.2                   # x and y from 0; the hall lies from x = 5.1 to 6.6
+WIDTH, DEPTH = 10.2, 8.2  # x and y from 0; the hall lies from x = 5.1 to 6.6
 WARM, COLD, LAMP = (1, 0.72, 0.45), (0.80, 0.90, 1), (1, 0.84, 0.62)
 
 
@@ -23,13 +23,25 @@ def _rooms():
     boards = diffuse("Boards", (0.42, 0.27, 0.15))
     box("Floor", boards, (0, 0, -0.2), (WIDTH, DEPTH, 0))
     box("Ceiling", white, (0, 0, HEIGHT), (WIDTH, DEPTH, HEIGHT + 0.2))
-    for name, start, end in (("South wall", (0, 0), (WIDTH, 0)), ("North wall", (0, DEPTH), (WIDTH, DEPTH)),
-                             ("West wall", (0, 0), (0, DEPTH)), ("East wall", (WIDTH, 0), (WIDTH, DEPTH))):
+    for name, start, end in (
+        ("South wall", (0, 0), (WIDTH, 0)),
+        ("North wall", (0, DEPTH), (WIDTH, DEPTH)),
+        ("West wall", (0, 0), (0, DEPTH)),
+        ("East wall", (WIDTH, 0), (WIDTH, DEPTH)),
+    ):
         wall(name, white, start, end, HEIGHT, thick=0.2)
     wall("Living room wall", white, (5.1, 0), (5.1, DEPTH), HEIGHT, [(2.7, 4.0, 0, DOOR)])
-    wall("Bedroom wall", diffuse("Ochre wall", (0.74, 0.50, 0.22)), (0, 4.6), (5.05, 4.6), HEIGHT, [(2.4, 3.4, 0, DOOR)])
-    wall("Hall wall", diffuse("Green wall", (0.36, 0.55, 0.36)), (6.6, 0), (6.6, DEPTH), HEIGHT,
-         [(2.4, 3.3, 0, DOOR), (5.6, 6.5, 0, DOOR)])
+    wall(
+        "Bedroom wall", diffuse("Ochre wall", (0.74, 0.50, 0.22)), (0, 4.6), (5.05, 4.6), HEIGHT, [(2.4, 3.4, 0, DOOR)]
+    )
+    wall(
+        "Hall wall",
+        diffuse("Green wall", (0.36, 0.55, 0.36)),
+        (6.6, 0),
+        (6.6, DEPTH),
+        HEIGHT,
+        [(2.4, 3.3, 0, DOOR), (5.6, 6.5, 0, DOOR)],
+    )
     wall("Bath wall", white, (6.65, 4.4), (WIDTH, 4.4), HEIGHT)
     leaf = diffuse("Door", (0.66, 0.63, 0.58))
     box("Bedroom door", leaf, (2.42, 4.65, 0.01), (2.46, 5.55, 2.03))
@@ -47,8 +59,14 @@ def _living_room():
         box("Table leg", oak, (*leg, 0), (leg[0] + 0.05, leg[1] + 0.05, 0.36))
     box("Sideboard", oak, (0.2, 4.1, 0.1), (2.0, 4.52, 0.75), bevel=0.01)
     for number, (left, tall) in enumerate(((0.3, 0.25), (0.55, 0.4), (1.5, 0.18))):
-        box("Vase", diffuse(f"Vase {number + 1}", ((0.7, 0.68, 0.6), (0.1, 0.3, 0.3), (0.65, 0.3, 0.1))[number]),
-            (left, 4.2, 0.75), (left + 0.16, 4.36, 0.75 + tall), turn=20 * number, bevel=0.03)
+        box(
+            "Vase",
+            diffuse(f"Vase {number + 1}", ((0.7, 0.68, 0.6), (0.1, 0.3, 0.3), (0.65, 0.3, 0.1))[number]),
+            (left, 4.2, 0.75),
+            (left + 0.16, 4.36, 0.75 + tall),
+            turn=20 * number,
+            bevel=0.03,
+        )
     box("Picture", diffuse("Picture", (0.5, 0.1, 0.12)), (0.4, 4.53, 1.25), (1.7, 4.56, 2.0))
 
 
@@ -76,14 +94,26 @@ def _kitchen_and_bath():
 
 def _lamps():
     down = aim((0, 0, 1), (0, 0, 0))
-    for name, color, power, at, size in (("Kitchen lamp", COLD, 70, (8.4, 2.2), 0.8), ("Bath lamp", COLD, 40, (8.4, 6.2), 0.5)):
+    for name, color, power, at, size in (
+        ("Kitchen lamp", COLD, 70, (8.4, 2.2), 0.8),
+        ("Bath lamp", COLD, 40, (8.4, 6.2), 0.5),
+    ):
         data = light_data("AREA", name, color, power, shape="SQUARE", size=size)
         place(name, data, None, (*at, HEIGHT - 0.06), down)
         side, z = size / 2, HEIGHT - 0.05
-        quad(f"{name} panel", glowing(f"{name} panel", color, 3), [
-            (at[0] - side, at[1] - side, z), (at[0] - side, at[1] + side, z),
-            (at[0] + side, at[1] + side, z), (at[0] + side, at[1] - side, z)])
+        quad(
+            f"{name} panel",
+            glowing(f"{name} panel", color, 3),
+            [
+                (at[0] - side, at[1] - side, z),
+                (at[0] - side, at[1] + side, z),
+                (at[0] + side, at[1] + side, z),
+                (at[0] + side, at[1] - side, z),
+            ],
+        )
     place("Floor lamp", light_data("POINT", "Floor lamp", LAMP, 45, shadow_soft_size=0.1), None, (4.6, 4.1, 1.5))
     shade = diffuse("Lamp foot", (0.12, 0.12, 0.12))
     box("Lamp pole", shade, (4.585, 4.085, 0), (4.615, 4.115, 1.3))
-    place("Bedside lamp", light_data("POINT", "Bedside lamp", WARM, 40, shadow_soft_size=0.08), None, (2.45, 7.75, 0.95))
+    place(
+        "Bedside lamp", light_data("POINT", "Bedside lamp", WARM, 40, shadow_soft_size=0.08), None, (2.45, 7.75, 0.95)
+    )

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render moving shots by EEVEE alone and with Afterlight, and put the two beside each other in one animated picture.
 
-    .venv/bin/python sample_blends/clip.py [SHOT ...] [--frames 1-24] [--size 480x270] [--samples 16] [--preset production]
+    .venv/bin/python sample_blends/clip.py [SHOT ...] [--frames 1-24] [--size 480x270] [--samples 16] [--preset
+    production]
         [--folder docs/pictures]
 
 Writes <shot>.webp, EEVEE alone on the left; lossy enough to have less than 3 MB."""
@@ -14,13 +15,13 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))               # Blender's -P does not do it
+sys.path.insert(0, str(HERE))  # Blender's -P does not do it
 
-import session  # noqa: E402
-from demo import GAP, PICTURES, picture_size  # noqa: E402
+import session
+from demo import GAP, PICTURES, picture_size
 
 SHOTS = HERE / "moving"
-LARGEST = 3_000_000                         # bytes; the README shows them
+LARGEST = 3_000_000  # bytes; the README shows them
 QUALITIES = 90, 80, 70, 60, 45, 30
 
 
@@ -28,6 +29,7 @@ def rendered(scene, enabled, folder):
     """[PIL.Image]: the scene's frames, rendered in one job with Afterlight on or off."""
     import bpy
     from PIL import Image
+
     scene.afterlight.enabled = enabled
     scene.render.filepath = str(folder / f"{'lit' if enabled else 'plain'}_####.png")
     scene.frame_set(scene.frame_end)  # an animation that begins at the current frame passes for F12 in its first
@@ -40,6 +42,7 @@ def rendered(scene, enabled, folder):
 def side_by_side(left, right):
     """Two pictures of one size in one, white between them."""
     from PIL import Image
+
     both = Image.new("RGB", (left.width + GAP + right.width, left.height), "white")
     both.paste(left, (0, 0))
     both.paste(right, (left.width + GAP, 0))
@@ -50,37 +53,51 @@ def write(frames, path, rate):
     """An endless WebP of the best quality that is small enough; `rate` frames a second."""
     for quality in QUALITIES:
         file = io.BytesIO()
-        frames[0].save(file, "WEBP", save_all=True, append_images=frames[1:], duration=round(1000 / rate), loop=0,
-                       quality=quality, method=6)
+        frames[0].save(
+            file,
+            "WEBP",
+            save_all=True,
+            append_images=frames[1:],
+            duration=round(1000 / rate),
+            loop=0,
+            quality=quality,
+            method=6,
+        )
         if file.tell() < LARGEST:
             path.write_bytes(file.getvalue())
             return quality
-    sys.exit(f"{path.name} would have {file.tell()} bytes at the least quality; {LARGEST} are wanted. Make it smaller by --size.")
+    sys.exit(
+        f"{path.name} would have {file.tell()} bytes at the least quality; {LARGEST} are wanted. Make it smaller "
+        "by --size."
+    )
 
 
 def show(name, options):
     """Write the clip of one shot."""
     import bpy
+
     bpy.ops.wm.open_mainfile(filepath=str(SHOTS / f"{name}.blend"), load_ui=False)
     scene = bpy.data.scenes[name]
     scene.render.resolution_x, scene.render.resolution_y = options.size
     scene.render.resolution_percentage = 100
-    scene.render.compositor_device = "CPU"  # the GPU compositor crashes in long processes (docs/blender.md)
+    scene.render.compositor_device = "CPU"  # the GPU compositor crashes in long processes (docs/blender/rendering.md)
     scene.eevee.taa_render_samples = options.samples
     image = scene.render.image_settings
     image.media_type, image.file_format, image.color_mode = "IMAGE", "PNG", "RGB"
     if options.frames:
         scene.frame_start, scene.frame_end = options.frames
     module = sys.modules[session.extension.MODULE]
-    bpy.ops.afterlight.preset(filepath=str(module.addon.operators.PRESETS / f"{options.preset}.py"))
+    bpy.ops.afterlight.preset(filepath=str(module.addon.ui.operators.PRESETS / f"{options.preset}.py"))
     scene.afterlight.use_animated_seed = True
     start = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="afterlight-clip-") as folder:
         plain, lit = (rendered(scene, enabled, Path(folder)) for enabled in (False, True))
     path = options.folder / f"{name}.webp"
     quality = write([side_by_side(*pair) for pair in zip(plain, lit, strict=True)], path, options.rate)
-    print(f"{path}: {len(plain)} frames, {path.stat().st_size / 1000:.0f} kB at quality {quality}, "
-          f"{time.perf_counter() - start:.0f} s")
+    print(
+        f"{path}: {len(plain)} frames, {path.stat().st_size / 1000:.0f} kB at quality {quality}, "
+        f"{time.perf_counter() - start:.0f} s"
+    )
 
 
 def frame_range(text):

@@ -3,9 +3,9 @@
 
 from parts import aim, box, camera, diffuse, light_data, place, render_settings, wall
 
-LENGTH, WIDTH, HEIGHT = 12.0, 1.8, 2.6     # along y, across x, both from 0
-DOOR = (6.6, 7.7)                          # along y, in the right wall
-ROOM = 4.4                                 # the lit room reaches from x = WIDTH to WIDTH + ROOM
+LENGTH, WIDTH, HEIGHT = 12.0, 1.8, 2.6  # along y, across x, both from 0
+DOOR = (6.6, 7.7)  # along y, in the right wall
+ROOM = 4.4  # the lit room reaches from x = WIDTH to WIDTH + ROOM
 
 
 def build(scene):
@@ -23,9 +23,18 @@ def _corridor():
     box("Corridor ceiling", paint, (-0.2, -0.2, HEIGHT), (WIDTH, LENGTH + 0.2, HEIGHT + 0.2))
     wall("Left wall", paint, (-0.1, -0.2), (-0.1, LENGTH + 0.2), HEIGHT, thick=0.2)
     wall("Near wall", paint, (0, -0.1), (WIDTH, -0.1), HEIGHT, thick=0.2)
-    wall("Far wall", diffuse("Far wall", (0.30, 0.45, 0.55)), (0, LENGTH + 0.1), (WIDTH, LENGTH + 0.1), HEIGHT, thick=0.2)
-    wall("Right wall", paint, (WIDTH + 0.06, -0.2), (WIDTH + 0.06, LENGTH + 0.2), HEIGHT,
-         [(DOOR[0] + 0.2, DOOR[1] + 0.2, 0, 2.1)], thick=0.12)
+    wall(
+        "Far wall", diffuse("Far wall", (0.30, 0.45, 0.55)), (0, LENGTH + 0.1), (WIDTH, LENGTH + 0.1), HEIGHT, thick=0.2
+    )
+    wall(
+        "Right wall",
+        paint,
+        (WIDTH + 0.06, -0.2),
+        (WIDTH + 0.06, LENGTH + 0.2),
+        HEIGHT,
+        [(DOOR[0] + 0.2, DOOR[1] + 0.2, 0, 2.1)],
+        thick=0.12,
+    )
     rail = diffuse("Rail", (0.35, 0.20, 0.10))
     box("Rail, left", rail, (0, 0, 0.9), (0.02, LENGTH, 1.02))
     for name, low, high in (("Rail, near", 0, DOOR[0] - 0.1), ("Rail, far", DOOR[1] + 0.1, LENGTH)):
@@ -54,7 +63,12 @@ def _lit_room():
 
 
 def _things():
-    box("Open door", diffuse("Open door", (0.66, 0.60, 0.50)), (WIDTH + 0.14, DOOR[1] + 0.02, 0.01), (WIDTH + 1.1, DOOR[1] + 0.06, 2.07))
+    box(
+        "Open door",
+        diffuse("Open door", (0.66, 0.60, 0.50)),
+        (WIDTH + 0.14, DOOR[1] + 0.02, 0.01),
+        (WIDTH + 1.1, DOOR[1] + 0.06, 2.07),
+    )
     wood = diffuse("Bench wood", (0.50, 0.32, 0.18))
     box("Bench", wood, (0.02, 5.2, 0.40), (0.42, 6.7, 0.45), bevel=0.01)
     for y in (5.3, 6.5):
@@ -65,4 +79,10 @@ def _things():
     box("Pot", pot, (0.15, 8.4, 0), (0.5, 8.75, 0.4), bevel=0.05)
     leaves = diffuse("Leaves", (0.10, 0.32, 0.08))
     for number in range(9):
-        box("Leaf", leaves, (0.30, 8.45 + 0.02 * number, 0.42 + 0.06 * number), (0.34, 8.70, 0.50 + 0.09 * number), turn=40 * number)
+        box(
+            "Leaf",
+            leaves,
+            (0.30, 8.45 + 0.02 * number, 0.42 + 0.06 * number),
+            (0.34, 8.70, 0.50 + 0.09 * number),
+            turn=40 * number,
+        )

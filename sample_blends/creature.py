@@ -6,7 +6,7 @@ from math import pi, sin
 import figure
 from parts import aim, animate, box, camera, diffuse, light_data, place, shot
 
-WIDTH, DEPTH, HEIGHT = 4.4, 3.6, 2.4       # x and y from 0
+WIDTH, DEPTH, HEIGHT = 4.4, 3.6, 2.4  # x and y from 0
 
 
 def build(scene):

@@ -11,12 +11,12 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))               # Blender's -P does not do it
+sys.path.insert(0, str(HERE))  # Blender's -P does not do it
 
-import session  # noqa: E402
+import session
 
 PICTURES = HERE.parent / "docs" / "pictures"
-GAP = 8                                     # pixels between the two pictures
+GAP = 8  # pixels between the two pictures
 
 
 def render(scene, path, enabled):
@@ -46,7 +46,7 @@ def side_by_side(left, right, path):
     first, second = pixels(left), pixels(right)
     height, width, _ = first.shape
     both = np.ones((height, 2 * width + GAP, 4), np.float32)
-    both[:, :width], both[:, width + GAP:] = first, second
+    both[:, :width], both[:, width + GAP :] = first, second
     image = bpy.data.images.new(path.stem, both.shape[1], height)
     image.pixels.foreach_set(both.ravel())
     image.filepath_raw, image.file_format = str(path), "PNG"

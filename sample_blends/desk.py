@@ -7,7 +7,7 @@ import numpy as np
 
 from parts import aim, box, camera, diffuse, light_data, mesh, place, render_settings
 
-TOP = 0.74                                 # of the desk; it stands against y = 0.8, with x from -0.9 to 0.9
+TOP = 0.74  # of the desk; it stands against y = 0.8, with x from -0.9 to 0.9
 
 
 def build(scene):
@@ -73,13 +73,21 @@ def _clutter():
     paper = diffuse("Paper", (0.80, 0.79, 0.76))
     for number in range(5):
         x, y = -0.62 + 0.05 * number, 0.06 + 0.02 * number
-        box("Sheet", paper, (x, y, TOP + 0.001 * number), (x + 0.21, y + 0.297, TOP + 0.001 * number + 0.0006), turn=23 * number - 40)
+        box(
+            "Sheet",
+            paper,
+            (x, y, TOP + 0.001 * number),
+            (x + 0.21, y + 0.297, TOP + 0.001 * number + 0.0006),
+            turn=23 * number - 40,
+        )
     china = diffuse("China", (0.70, 0.12, 0.08))
     place("Mug", _cup(0.042, 0.10), china, (0.50, 0.34, TOP))
     place("Pen pot", _cup(0.038, 0.11), diffuse("Pen pot", (0.10, 0.35, 0.30)), (0.36, 0.42, TOP))
     for number in range(8):
         angle = 2 * pi * number / 8
-        pen = diffuse(f"Pen {number + 1}", ((0.7, 0.6, 0.1), (0.1, 0.2, 0.6), (0.6, 0.1, 0.1), (0.1, 0.5, 0.2))[number % 4])
+        pen = diffuse(
+            f"Pen {number + 1}", ((0.7, 0.6, 0.1), (0.1, 0.2, 0.6), (0.6, 0.1, 0.1), (0.1, 0.5, 0.2))[number % 4]
+        )
         thing = box("Pen", pen, (-0.0035, -0.0035, 0), (0.0035, 0.0035, 0.17))
         thing.location = (0.36 + 0.02 * cos(angle), 0.42 + 0.02 * sin(angle), TOP + 0.10)
         thing.rotation_euler = (0.25 * sin(-angle), 0.25 * cos(angle), angle)
@@ -87,15 +95,31 @@ def _clutter():
     leaf = mesh("Leaf", [(0, 0, 0), (0.03, 0.06, 0.01), (0, 0.16, 0), (-0.03, 0.06, 0.01)], [(0, 1, 2, 3)])
     green = diffuse("Leaf", (0.12, 0.36, 0.09))
     for number in range(40):
-        place("Leaf", leaf, green, (-0.74, 0.66, TOP + 0.10 + 0.004 * number), (15 + (37 * number) % 60, 0, 137.5 * number))
+        place(
+            "Leaf",
+            leaf,
+            green,
+            (-0.74, 0.66, TOP + 0.10 + 0.004 * number),
+            (15 + (37 * number) % 60, 0, 137.5 * number),
+        )
 
 
 def _cup(radius, height, segments=32, thick=0.004):
     """An open cup with a wall of some thickness."""
     rings = [(radius, 0), (radius, height), (radius - thick, height), (radius - thick, thick)]
-    points = [(r * cos(2 * pi * k / segments), r * sin(2 * pi * k / segments), z) for r, z in rings for k in range(segments)]
-    faces = [(ring * segments + k, ring * segments + (k + 1) % segments, (ring + 1) * segments + (k + 1) % segments,
-              (ring + 1) * segments + k) for ring in range(3) for k in range(segments)]
+    points = [
+        (r * cos(2 * pi * k / segments), r * sin(2 * pi * k / segments), z) for r, z in rings for k in range(segments)
+    ]
+    faces = [
+        (
+            ring * segments + k,
+            ring * segments + (k + 1) % segments,
+            (ring + 1) * segments + (k + 1) % segments,
+            (ring + 1) * segments + k,
+        )
+        for ring in range(3)
+        for k in range(segments)
+    ]
     faces += [tuple(range(segments))[::-1], tuple(range(3 * segments, 4 * segments))]
     data = mesh("Cup", points, faces, smooth=True)
     data.set_sharp_from_angle(angle=0.5)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A street corner at night under a shining sign. EEVEE takes no light from emission: all the sign gives is the bounce."""
+"""A street corner at night under a shining sign. EEVEE takes no light from emission: all the sign gives is the
+bounce."""
 
 import bpy
 
@@ -64,8 +65,10 @@ def _light_box(name, glass, frame, low, high, front, back, rim=0.09):
     box(f"{name} glass", glass, (left, front + 0.04, bottom), (right, back - 0.02, top))
     box(f"{name} back", frame, (left - rim, back - 0.02, bottom - rim), (right + rim, back, top + rim))
     for edge, (x0, x1, z0, z1) in {
-        "left": (left - rim, left, bottom - rim, top + rim), "right": (right, right + rim, bottom - rim, top + rim),
-        "bottom": (left, right, bottom - rim, bottom), "top": (left, right, top, top + rim),
+        "left": (left - rim, left, bottom - rim, top + rim),
+        "right": (right, right + rim, bottom - rim, top + rim),
+        "bottom": (left, right, bottom - rim, bottom),
+        "top": (left, right, top, top + rim),
     }.items():
         box(f"{name} rim, {edge}", frame, (x0, front, z0), (x1, back - 0.02, z1))
 

@@ -9,12 +9,13 @@ from mathutils import Vector
 from parts import mesh, place
 
 SIDES, RINGS = 10, 7
-JOINT = 0.3                                # share of a bone at whose start its parent still pulls
+JOINT = 0.3  # share of a bone at whose start its parent still pulls
 
 
 def body(name, material, bones):
-    """An armature object with a skinned mesh. bones: {name: (parent or "", head, tail, thick at the head, at the tail)},
-    parents first; places and radii in metres. Returns the armature object; its pose bones turn about their own axes."""
+    """An armature object with a skinned mesh. bones: {name: (parent or "", head, tail, thick at the head, at the
+    tail)}, parents first; places and radii in metres. Returns the armature object; its pose bones turn about their own
+    axes."""
     armature = place(name, bpy.data.armatures.new(name))
     bpy.context.view_layer.objects.active = armature
     bpy.ops.object.mode_set(mode="EDIT")
@@ -60,5 +61,8 @@ def _ring(head, tail, along, first, last):
     across = axis.cross(side)
     out = 2 * along - 1
     reach = (first + (last - first) * along) * (1 - 0.6 * abs(out) ** 6)
-    middle = head + (tail - head) * along + axis * (out ** 5) * (first if out < 0 else last) * 0.8
-    return [middle + (side * cos(2 * pi * turn / SIDES) + across * sin(2 * pi * turn / SIDES)) * reach for turn in range(SIDES)]
+    middle = head + (tail - head) * along + axis * (out**5) * (first if out < 0 else last) * 0.8
+    return [
+        middle + (side * cos(2 * pi * turn / SIDES) + across * sin(2 * pi * turn / SIDES)) * reach
+        for turn in range(SIDES)
+    ]

@@ -3,14 +3,16 @@
 
 from parts import aim, animate, box, camera, diffuse, light_data, place, shot
 
-WIDTH, DEPTH, HEIGHT = 4.4, 4.0, 2.6       # x and y from 0
-SWITCHED = 13                              # the first frame without the bright lamp
+WIDTH, DEPTH, HEIGHT = 4.4, 4.0, 2.6  # x and y from 0
+SWITCHED = 13  # the first frame without the bright lamp
 
 
 def build(scene):
     shot(scene, exposure=1.0)
     _room()
-    bright = light_data("SPOT", "Reading lamp", (1, 0.80, 0.55), 320, spot_size=1.7, spot_blend=0.5, shadow_soft_size=0.1)
+    bright = light_data(
+        "SPOT", "Reading lamp", (1, 0.80, 0.55), 320, spot_size=1.7, spot_blend=0.5, shadow_soft_size=0.1
+    )
     place("Reading lamp", bright, None, (3.3, 1.9, 1.3), aim((3.3, 1.9, 1.3), (4.2, 2.9, 2.4)))
     animate(bright, "energy", {1: 320, SWITCHED: 0}, "CONSTANT")
     dim = light_data("AREA", "Window", (0.60, 0.76, 1), 18, shape="RECTANGLE", size=1.2, size_y=1.1)

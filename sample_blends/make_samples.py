@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Write the sample scenes, each from the module of its name in this folder, with Afterlight switched on.
 
-    .venv/bin/python sample_blends/make_samples.py [NAME ...] [--plain] [--folder FOLDER]
-    blender -b -P sample_blends/make_samples.py -- [NAME ...]
+.venv/bin/python sample_blends/make_samples.py [NAME ...] [--plain] [--folder FOLDER]
+blender -b -P sample_blends/make_samples.py -- [NAME ...]
 """
 
 import argparse
@@ -11,21 +11,39 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))               # Blender's -P does not do it
+sys.path.insert(0, str(HERE))  # Blender's -P does not do it
 
-import session  # noqa: E402
+import session
 
-SAMPLES = ("cornell_box", "sunlit_room", "many_lights", "emissive_sign", "sculpture", "apartment", "street", "desk", "corridor",
-           "metal_bin", "polished_floor", "plastics")
-GLOSSY = SAMPLES[-3:]                       # those that Glossy Light is on in
-DIFFUSE = SAMPLES[:-3]                      # those whose light accuracy measures
-MOVING = ("pillars", "walking_shadow", "lamp_switched", "creature")  # shots; apart, as the others are measured by the folder
-LARGEST = 2_000_000                         # bytes; the samples are kept in the repository
+SAMPLES = (
+    "cornell_box",
+    "sunlit_room",
+    "many_lights",
+    "emissive_sign",
+    "sculpture",
+    "apartment",
+    "street",
+    "desk",
+    "corridor",
+    "metal_bin",
+    "polished_floor",
+    "plastics",
+)
+GLOSSY = SAMPLES[-3:]  # those that Glossy Light is on in
+DIFFUSE = SAMPLES[:-3]  # those whose light accuracy measures
+MOVING = (
+    "pillars",
+    "walking_shadow",
+    "lamp_switched",
+    "creature",
+)  # shots; apart, as the others are measured by the folder
+LARGEST = 2_000_000  # bytes; the samples are kept in the repository
 
 
 def make(name, folder, plain):
     """Build one sample and save it compressed; return the file's path."""
     import bpy
+
     import parts
 
     scene = parts.empty_scene(name)
@@ -35,7 +53,7 @@ def make(name, folder, plain):
         session.tick(scene)
         scene.afterlight.use_glossy = name in GLOSSY
     path = folder / f"{name}.blend"
-    path.unlink(missing_ok=True)            # or Blender keeps it as a .blend1
+    path.unlink(missing_ok=True)  # or Blender keeps it as a .blend1
     bpy.ops.wm.save_as_mainfile(filepath=str(path), check_existing=False, compress=True)
     if path.stat().st_size > LARGEST:
         sys.exit(f"{path} has {path.stat().st_size} bytes; at most {LARGEST} are wanted.")
@@ -47,8 +65,12 @@ def main():
     parser = argparse.ArgumentParser(description="Write Afterlight's sample scenes.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of: {', '.join(every)}; all without")
     parser.add_argument("--plain", action="store_true", help="without Afterlight, for a look at the bare scenes")
-    parser.add_argument("--folder", type=Path, default=HERE,
-                        help="where to write; beside this script without, and the moving shots in moving/ there")
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        default=HERE,
+        help="where to write; beside this script without, and the moving shots in moving/ there",
+    )
     options = parser.parse_args(session.arguments())
     if unknown := set(options.names) - set(every):
         parser.error(f"no sample is called {', '.join(sorted(unknown))}; there are {', '.join(every)}")

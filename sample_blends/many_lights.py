@@ -9,9 +9,9 @@ import numpy as np
 from parts import box, camera, diffuse, glowing, light_data, mesh, place, render_settings
 
 PILLARS, LANTERNS = 16, 16
-AISLE, SPACING = 1.9, 2.3                  # pillars stand at x = -AISLE and +AISLE, SPACING apart along y
+AISLE, SPACING = 1.9, 2.3  # pillars stand at x = -AISLE and +AISLE, SPACING apart along y
 HALF_WIDTH, LENGTH, HEIGHT = 3.6, 19.5, 4.4
-RADIUS, WINDING = 0.32, 0.45               # of a pillar, and of the lanterns around it
+RADIUS, WINDING = 0.32, 0.45  # of a pillar, and of the lanterns around it
 
 
 def build(scene):
@@ -26,8 +26,20 @@ def build(scene):
         side, row = 2 * (number % 2) - 1, number // 2
         foot = (side * AISLE, 1.2 + row * SPACING, 0)
         place("Pillar", pillar, stone, foot)
-        box("Pillar foot", stone, (foot[0] - 0.45, foot[1] - 0.45, 0), (foot[0] + 0.45, foot[1] + 0.45, 0.18), bevel=0.02)
-        box("Pillar head", stone, (foot[0] - 0.45, foot[1] - 0.45, HEIGHT - 0.3), (foot[0] + 0.45, foot[1] + 0.45, HEIGHT), bevel=0.02)
+        box(
+            "Pillar foot",
+            stone,
+            (foot[0] - 0.45, foot[1] - 0.45, 0),
+            (foot[0] + 0.45, foot[1] + 0.45, 0.18),
+            bevel=0.02,
+        )
+        box(
+            "Pillar head",
+            stone,
+            (foot[0] - 0.45, foot[1] - 0.45, HEIGHT - 0.3),
+            (foot[0] + 0.45, foot[1] + 0.45, HEIGHT),
+            bevel=0.02,
+        )
         _lanterns(number, side, row, foot, bulbs)
     _objects()
     camera(scene, (0.55, -2.6, 1.75), (-0.25, 8, 1.75), 24)
@@ -53,9 +65,14 @@ def _pillar_mesh(segments=32):
 
 def _ring_faces(rings, segments):
     return [
-        (ring * segments + k, ring * segments + (k + 1) % segments,
-         (ring + 1) * segments + (k + 1) % segments, (ring + 1) * segments + k)
-        for ring in range(rings - 1) for k in range(segments)
+        (
+            ring * segments + k,
+            ring * segments + (k + 1) % segments,
+            (ring + 1) * segments + (k + 1) % segments,
+            (ring + 1) * segments + k,
+        )
+        for ring in range(rings - 1)
+        for k in range(segments)
     ]
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A bin of brushed metal in the corner of a coloured room, before a satin plate: what they show is light off the walls."""
+"""A bin of brushed metal in the corner of a coloured room, before a satin plate: what they show is light off the
+walls."""
 
 from parts import aim, box, camera, diffuse, glossy, light_data, place, quad, render_settings, turned
 
@@ -10,11 +11,30 @@ def build(scene):
     render_settings(scene, exposure=0.5)
     _room()
     brushed = glossy("Brushed steel", (0.62, 0.61, 0.59), 0.3, metallic=1)
-    turned("Bin", brushed, [(0, 0.03), (0.27, 0.03), (0.33, 0.78), (0.315, 0.78), (0.26, 0.05), (0, 0.05)], (-0.25, 1.7, 0))
-    turned("Bin rim", glossy("Polished rim", (0.75, 0.74, 0.72), 0.15, metallic=1),
-           [(0.305, 0.77), (0.345, 0.77), (0.345, 0.81), (0.305, 0.81), (0.305, 0.77)], (-0.25, 1.7, 0))
-    box("Plate", glossy("Satin copper", (0.83, 0.48, 0.34), 0.2, metallic=1), (0.45, 2.0, 0), (1.25, 2.03, 1.1), turn=-18)
-    box("Block", glossy("Cast iron", (0.45, 0.45, 0.47), 0.6, metallic=1), (0.55, 1.0, 0), (0.95, 1.4, 0.4), turn=25, bevel=0.02)
+    turned(
+        "Bin", brushed, [(0, 0.03), (0.27, 0.03), (0.33, 0.78), (0.315, 0.78), (0.26, 0.05), (0, 0.05)], (-0.25, 1.7, 0)
+    )
+    turned(
+        "Bin rim",
+        glossy("Polished rim", (0.75, 0.74, 0.72), 0.15, metallic=1),
+        [(0.305, 0.77), (0.345, 0.77), (0.345, 0.81), (0.305, 0.81), (0.305, 0.77)],
+        (-0.25, 1.7, 0),
+    )
+    box(
+        "Plate",
+        glossy("Satin copper", (0.83, 0.48, 0.34), 0.2, metallic=1),
+        (0.45, 2.0, 0),
+        (1.25, 2.03, 1.1),
+        turn=-18,
+    )
+    box(
+        "Block",
+        glossy("Cast iron", (0.45, 0.45, 0.47), 0.6, metallic=1),
+        (0.55, 1.0, 0),
+        (0.95, 1.4, 0.4),
+        turn=25,
+        bevel=0.02,
+    )
     box("Crate", diffuse("Crate", (0.55, 0.36, 0.16)), (-1.35, 1.1, 0), (-0.85, 1.6, 0.5), turn=12, bevel=0.01)
     lamp = light_data("AREA", "Lamp", (1, 0.86, 0.68), 45, shape="RECTANGLE", size=0.8, size_y=0.5)
     place("Lamp", lamp, None, (0.2, 1.4, HEIGHT - 0.02), aim((0, 0, 1), (0, 0, 0)))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the sample scenes are built from: materials, boxes, lights, a camera, render settings. Metres, watts, radians."""
+"""What the sample scenes are built from: materials, boxes, lights, a camera, render settings. Metres, watts,
+radians."""
 
 from math import cos, pi, radians, sin
 
@@ -110,11 +111,20 @@ def box(name, material, low, high, turn=0.0, bevel=0.0):
 
 
 def turned(name, material, profile, location=(0, 0, 0), around=48):
-    """A smooth surface of revolution about z; profile: (radius, height) from one end to the other, the outside to its right."""
+    """A smooth surface of revolution about z; profile: (radius, height) from one end to the other, the outside to its
+    right."""
     angles = [2 * pi * step / around for step in range(around)]
     vertices = [(radius * cos(angle), radius * sin(angle), height) for radius, height in profile for angle in angles]
-    faces = [(ring * around + step, ring * around + (step + 1) % around, (ring + 1) * around + (step + 1) % around,
-              (ring + 1) * around + step) for ring in range(len(profile) - 1) for step in range(around)]
+    faces = [
+        (
+            ring * around + step,
+            ring * around + (step + 1) % around,
+            (ring + 1) * around + (step + 1) % around,
+            (ring + 1) * around + step,
+        )
+        for ring in range(len(profile) - 1)
+        for step in range(around)
+    ]
     thing = place(name, mesh(name, vertices, faces, smooth=True), material, location)
     thing.data.set_sharp_from_angle(angle=radians(40))
     return thing
@@ -123,8 +133,13 @@ def turned(name, material, profile, location=(0, 0, 0), around=48):
 def ball(name, material, location, radius, around=48):
     """A smooth ball."""
     steps = around // 2
-    return turned(name, material, [(radius * sin(pi * step / steps), -radius * cos(pi * step / steps)) for step in range(steps + 1)],
-                  location, around)
+    return turned(
+        name,
+        material,
+        [(radius * sin(pi * step / steps), -radius * cos(pi * step / steps)) for step in range(steps + 1)],
+        location,
+        around,
+    )
 
 
 def quad(name, material, corners):
@@ -170,7 +185,7 @@ def wall(name, material, start, end, height, openings=(), thick=0.1):
         for bottom, top in spans:
             if top > bottom:
                 first, second = (origin + low, across - side), (origin + high, across + side)
-                box(name, material, (*first[::1 - 2 * along], bottom), (*second[::1 - 2 * along], top))
+                box(name, material, (*first[:: 1 - 2 * along], bottom), (*second[:: 1 - 2 * along], top))
 
 
 def shot(scene, frames=24, **settings):

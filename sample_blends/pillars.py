@@ -3,8 +3,8 @@
 
 from parts import aim, animate, box, camera, diffuse, light_data, place, shot, wall
 
-LENGTH, WIDTH, HEIGHT = 11.0, 5.2, 3.4     # x and y from 0
-ROWS = 2.0, 4.0                            # of pillars, along y
+LENGTH, WIDTH, HEIGHT = 11.0, 5.2, 3.4  # x and y from 0
+ROWS = 2.0, 4.0  # of pillars, along y
 STEP, THICK = 1.9, 0.34
 
 
@@ -30,6 +30,20 @@ def _hall():
     box("Floor", diffuse("Floor", (0.62, 0.50, 0.36)), (-0.2, -0.2, -0.2), (LENGTH + 0.2, WIDTH + 0.2, 0))
     box("Ceiling", plaster, (-0.2, -0.2, HEIGHT), (LENGTH + 0.2, WIDTH + 0.2, HEIGHT + 0.2))
     wall("Window wall", plaster, (0, -0.1), (LENGTH, -0.1), HEIGHT, windows, thick=0.2)
-    wall("Red wall", diffuse("Red wall", (0.66, 0.16, 0.10)), (-0.2, WIDTH + 0.1), (LENGTH + 0.2, WIDTH + 0.1), HEIGHT, thick=0.2)
+    wall(
+        "Red wall",
+        diffuse("Red wall", (0.66, 0.16, 0.10)),
+        (-0.2, WIDTH + 0.1),
+        (LENGTH + 0.2, WIDTH + 0.1),
+        HEIGHT,
+        thick=0.2,
+    )
     wall("West wall", plaster, (-0.1, -0.2), (-0.1, WIDTH), HEIGHT, thick=0.2)
-    wall("Green wall", diffuse("Green wall", (0.22, 0.48, 0.20)), (LENGTH + 0.1, -0.2), (LENGTH + 0.1, WIDTH), HEIGHT, thick=0.2)
+    wall(
+        "Green wall",
+        diffuse("Green wall", (0.22, 0.48, 0.20)),
+        (LENGTH + 0.1, -0.2),
+        (LENGTH + 0.1, WIDTH),
+        HEIGHT,
+        thick=0.2,
+    )

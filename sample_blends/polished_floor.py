@@ -21,7 +21,12 @@ def build(scene):
     teal = diffuse("Teal", (0.08, 0.36, 0.36))
     for row in range(3):
         for side in (-1, 1):
-            box("Pillar", teal if side < 0 else white, (side * 2.2 - 0.2, 3.2 + 3 * row, 0), (side * 2.2 + 0.2, 3.6 + 3 * row, HEIGHT))
+            box(
+                "Pillar",
+                teal if side < 0 else white,
+                (side * 2.2 - 0.2, 3.2 + 3 * row, 0),
+                (side * 2.2 + 0.2, 3.6 + 3 * row, HEIGHT),
+            )
     box("Bench", glossy("Lacquer", (0.55, 0.05, 0.05), 0.25), (0.6, 4.2, 0.38), (1.9, 4.65, 0.44), bevel=0.01)
     for left in (0.7, 1.72):
         box("Bench leg", diffuse("Leg", (0.05, 0.05, 0.05)), (left, 4.28, 0), (left + 0.08, 4.58, 0.38))

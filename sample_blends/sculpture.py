@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A plaster knot on a plinth in a coloured courtyard, lit by an environment map computed here and packed in the file."""
+"""A plaster knot on a plinth in a coloured courtyard, lit by an environment map computed here and packed in the
+file."""
 
 from math import pi
 
@@ -8,8 +9,8 @@ import numpy as np
 
 from parts import box, camera, diffuse, mesh, place, render_settings, sky
 
-SUN = np.array([0.85, 0.22, 0.78])        # towards the sun
-SUN_RADIUS = 0.045                          # radians; ten times the real one, so that a small map can hold it
+SUN = np.array([0.85, 0.22, 0.78])  # towards the sun
+SUN_RADIUS = 0.045  # radians; ten times the real one, so that a small map can hold it
 
 
 def build(scene):
@@ -95,5 +96,7 @@ def _afternoon(width, height):
     color = np.where(up > 0, zenith * (1 - haze) + horizon * haze, ground)
     toward = way @ (SUN / np.linalg.norm(SUN))
     color = color + np.array([1.0, 0.8, 0.5]) * 0.6 * np.exp((toward[..., None] - 1) * 30)
-    color = np.where(np.arccos(np.clip(toward, -1, 1))[..., None] < SUN_RADIUS, np.array([1.0, 0.90, 0.74]) * 3600, color)
+    color = np.where(
+        np.arccos(np.clip(toward, -1, 1))[..., None] < SUN_RADIUS, np.array([1.0, 0.90, 0.74]) * 3600, color
+    )
     return np.concatenate([color * 0.28, np.ones((height, width, 1))], axis=-1).astype(np.float32)

@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-import extension  # noqa: E402
+import extension
 
 
 def enable_afterlight():
@@ -21,8 +21,10 @@ def enable_afterlight():
     if extension.MODULE in sys.modules:
         return sys.modules[extension.MODULE]
     if "bpy" in sys.modules:
-        sys.exit("Afterlight is not enabled in this Blender: install dist/afterlight-<version>.zip, which 'make package' "
-                 "writes, under Edit > Preferences > Get Extensions > Install from Disk.")
+        sys.exit(
+            "Afterlight is not enabled in this Blender: install dist/afterlight-<version>.zip, which 'make package' "
+            "writes, under Edit > Preferences > Get Extensions > Install from Disk."
+        )
     if not (ROOT / "__init__.py").exists():
         sys.exit(f"{ROOT} holds no extension: its __init__.py is missing.")
     return extension.start()
@@ -38,5 +40,5 @@ def tick(scene):
 def arguments():
     """The script's own arguments, under plain Python and after the -- of Blender's command line alike."""
     if "--" in sys.argv:
-        return sys.argv[sys.argv.index("--") + 1:]
+        return sys.argv[sys.argv.index("--") + 1 :]
     return sys.argv[1:] if Path(sys.argv[0]).suffix == ".py" else []

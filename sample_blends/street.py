@@ -5,9 +5,16 @@ import numpy as np
 
 from parts import aim, box, camera, diffuse, light_data, place, render_settings, sky
 
-LENGTH, ROAD, PAVEMENT = 44.0, 6.0, 2.2    # along y from 0; across x around 0
-FRONT = ROAD / 2 + PAVEMENT                # houses stand from |x| = FRONT on
-WALLS = [(0.72, 0.52, 0.30), (0.66, 0.30, 0.20), (0.74, 0.70, 0.60), (0.45, 0.55, 0.48), (0.70, 0.62, 0.38), (0.56, 0.22, 0.16)]
+LENGTH, ROAD, PAVEMENT = 44.0, 6.0, 2.2  # along y from 0; across x around 0
+FRONT = ROAD / 2 + PAVEMENT  # houses stand from |x| = FRONT on
+WALLS = [
+    (0.72, 0.52, 0.30),
+    (0.66, 0.30, 0.20),
+    (0.74, 0.70, 0.60),
+    (0.45, 0.55, 0.48),
+    (0.70, 0.62, 0.38),
+    (0.56, 0.22, 0.16),
+]
 
 
 def build(scene):
@@ -49,7 +56,12 @@ def _row(side, chance):
                 _window(side, y + 0.7 + 1.95 * column, 3.2 * floor + 1.0, glass, frame, door=floor == 0 and column == 1)
         y, number = y + wide, number + 1
     if side > 0:
-        box("Far house", diffuse("Far house", (0.70, 0.46, 0.28)), (-FRONT - 6, LENGTH + 8, -0.3), (FRONT + 6, LENGTH + 14, 13))
+        box(
+            "Far house",
+            diffuse("Far house", (0.70, 0.46, 0.28)),
+            (-FRONT - 6, LENGTH + 8, -0.3),
+            (FRONT + 6, LENGTH + 14, 13),
+        )
 
 
 def _house(side, y, wide, tall, wall, trim):

@@ -3,9 +3,9 @@
 
 from parts import aim, box, camera, diffuse, glowing, light_data, place, quad, render_settings
 
-WIDTH, DEPTH, HEIGHT = 5.2, 5.4, 2.7      # x from 0, y from 0, z from 0
-SILL, LINTEL = 0.75, 2.35                  # the window is in the left wall
-WINDOW = (2.3, 4.2)                        # from and to along y
+WIDTH, DEPTH, HEIGHT = 5.2, 5.4, 2.7  # x from 0, y from 0, z from 0
+SILL, LINTEL = 0.75, 2.35  # the window is in the left wall
+WINDOW = (2.3, 4.2)  # from and to along y
 
 
 def build(scene):
@@ -64,7 +64,12 @@ def _furniture():
         left = 0.40
         for book in range(0 if board == 4 else 9 - 2 * (board % 2)):
             thick, tall = 0.04 + 0.013 * ((book * 7 + board * 3) % 5), 0.22 + 0.03 * ((book * 5 + board) % 4)
-            box("Book", covers[(book * 3 + board) % 5], (left, DEPTH - 0.27, height + 0.03), (left + thick, DEPTH - 0.05, height + 0.03 + tall))
+            box(
+                "Book",
+                covers[(book * 3 + board) % 5],
+                (left, DEPTH - 0.27, height + 0.03),
+                (left + thick, DEPTH - 0.05, height + 0.03 + tall),
+            )
             left += thick + 0.008
     for side in (0.32, 1.35):
         box("Shelf side", oak, (side, DEPTH - 0.32, 0), (side + 0.03, DEPTH - 0.02, 1.85))
@@ -79,7 +84,9 @@ def _sun_and_sky():
     near, far = WINDOW
     # EEVEE's world light would come through the walls, so half of the sky is a light in the window
     # and half a shining plane behind it.
-    sky = light_data("AREA", "Sky in the window", (0.62, 0.80, 1), 14, shape="RECTANGLE", size=far - near, size_y=LINTEL - SILL)
+    sky = light_data(
+        "AREA", "Sky in the window", (0.62, 0.80, 1), 14, shape="RECTANGLE", size=far - near, size_y=LINTEL - SILL
+    )
     place("Sky in the window", sky, None, (-0.05, (near + far) / 2, (SILL + LINTEL) / 2), aim((0, 0, 0), (1, 0, 0)))
     plane = quad("Sky", glowing("Sky", (0.62, 0.80, 1), 1.5), [(-3, 0, -1), (-3, 9, -1), (-3, 9, 5), (-3, 0, 5)])
     plane.visible_shadow = False

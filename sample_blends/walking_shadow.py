@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A moving shot: someone walks through the light of a lamp. The shadow crosses the bright wall, and its bounce fails."""
+"""A moving shot: someone walks through the light of a lamp. The shadow crosses the bright wall, and its bounce
+fails."""
 
 from math import pi, sin
 
 import figure
 from parts import aim, animate, box, camera, diffuse, light_data, place, shot
 
-WIDTH, DEPTH, HEIGHT = 5.0, 4.6, 2.7       # x and y from 0
+WIDTH, DEPTH, HEIGHT = 5.0, 4.6, 2.7  # x and y from 0
 
 
 def build(scene):
@@ -45,9 +46,20 @@ def _walker():
     walker = figure.body("Walker", diffuse("Clothes", (0.30, 0.34, 0.30)), bones)
     walker.rotation_euler.z = -0.98
     animate(walker, "location", {1: (4.3, 2.5, 0), 24: (2.35, 1.2, 0)})
-    for name, swing, turn in (("thigh left", 0.5, 0), ("thigh right", 0.5, pi), ("arm left", 0.4, pi), ("arm right", 0.4, 0)):
-        animate(walker.pose.bones[name], "rotation_euler", {
-            frame: (swing * sin(2 * pi * (frame - 1) / 12 + turn), 0, 0) for frame in range(1, 25)})
+    for name, swing, turn in (
+        ("thigh left", 0.5, 0),
+        ("thigh right", 0.5, pi),
+        ("arm left", 0.4, pi),
+        ("arm right", 0.4, 0),
+    ):
+        animate(
+            walker.pose.bones[name],
+            "rotation_euler",
+            {frame: (swing * sin(2 * pi * (frame - 1) / 12 + turn), 0, 0) for frame in range(1, 25)},
+        )
     for name, turn in (("shin left", 0), ("shin right", pi)):
-        animate(walker.pose.bones[name], "rotation_euler", {
-            frame: (0.35 + 0.35 * sin(2 * pi * (frame - 1) / 12 + turn - pi / 2), 0, 0) for frame in range(1, 25)})
+        animate(
+            walker.pose.bones[name],
+            "rotation_euler",
+            {frame: (0.35 + 0.35 * sin(2 * pi * (frame - 1) / 12 + turn - pi / 2), 0, 0) for frame in range(1, 25)},
+        )

@@ -18,6 +18,7 @@ except ImportError as error:
 def gpu_ready():
     """The `gpu` module usable without any render. Fails readably where there is no OpenGL at all."""
     import gpu
+
     try:
         gpu.init()
     except SystemError as error:
@@ -42,3 +43,38 @@ def fresh(afterlight):
     # Not read_factory_settings: that resets the preferences as well, and with them the extension is off.
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     return bpy.context.scene
+
+
+@pytest.fixture
+def scene(fresh):
+    """A box with a lamp and a camera, one sample."""
+    import scenes
+
+    return scenes.box(fresh, samples=1)
+
+
+@pytest.fixture
+def addon(afterlight):
+    """The add-on's own package, bl_ext.user_default.afterlight.addon."""
+    return afterlight.addon
+
+
+@pytest.fixture(scope="module")
+def light(afterlight):
+    """addon.gather of the installed extension, with a GPU context to run it in.
+
+    Outside a render Blender leaves whatever context was last active: none after a render by an engine in Python, its
+    own after one by EEVEE or Workbench."""
+    import gpu  # which exists only once bpy is in
+
+    import scenes
+
+    try:
+        gpu.types.GPUTexture((1, 1))
+    except RuntimeError:
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        scene = bpy.context.scene
+        scene.render.engine, scene.camera = "BLENDER_WORKBENCH", scenes.put(bpy.data.cameras.new("Camera"))
+        scene.render.resolution_x = scene.render.resolution_y = 4
+        bpy.ops.render.render()
+    return afterlight.addon.gather

@@ -1,21 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What panels and menus draw, without a window; and the scene and add-on that tests of the interface begin with."""
+"""What panels and menus draw, without a window."""
 
 from types import SimpleNamespace
 
 import bpy
-import pytest
-from scenes import box
-
-
-@pytest.fixture
-def scene(fresh):
-    return box(fresh, samples=1)
-
-
-@pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
 
 
 class Layout:
@@ -30,6 +18,7 @@ class Layout:
         def draw(*arguments, **options):
             self.drawn.append((kind, arguments, options, self))
             return SimpleNamespace() if kind == "operator" else Layout(self.drawn, self)
+
         return draw
 
     @property
@@ -40,8 +29,9 @@ class Layout:
 def drawn(panel, method="draw"):
     """What a panel or menu draws now."""
     found = []
-    context = SimpleNamespace(scene=bpy.context.scene, region=SimpleNamespace(width=400),
-                              preferences=bpy.context.preferences)
+    context = SimpleNamespace(
+        scene=bpy.context.scene, region=SimpleNamespace(width=400), preferences=bpy.context.preferences
+    )
     getattr(panel, method)(SimpleNamespace(layout=Layout(found)), context)
     return found
 

@@ -17,7 +17,7 @@ def box(scene, samples=4):
     scene.eevee.taa_render_samples = samples
     scene.eevee.use_raytracing = False
     # Blender 5.2.3's GPU compositor crashes in a process that composites different trees for over a minute
-    # (docs/blender.md). One test uses it all the same.
+    # (docs/blender/rendering.md). One test uses it all the same.
     scene.render.compositor_device = "CPU"
     white, red = matt("White", (0.8, 0.8, 0.8)), matt("Red", (0.8, 0.1, 0.1))
     wall(white, (0, 0, -1.5), (0, 0, 0))
@@ -141,8 +141,11 @@ def render(scene, path, file_format="OPEN_EXR"):
 
 def read(path):
     """Channels of an EXR file by name, rows top first."""
-    return {name: channel.pixels for part in OpenEXR.File(str(path), separate_channels=True).parts
-            for name, channel in part.channels.items()}
+    return {
+        name: channel.pixels
+        for part in OpenEXR.File(str(path), separate_channels=True).parts
+        for name, channel in part.channels.items()
+    }
 
 
 def read_rgb(path):
@@ -152,10 +155,31 @@ def read_rgb(path):
 
 
 # Not part of what a user has in a file, or different in each session.
-_VOLATILE = {"rna_type", "session_uid", "is_evaluated", "original", "depsgraph", "bl_rna", "is_updated",
-             "is_updated_data", "preview", "id_properties_ui", "asset_data", "users", "dimensions", "tag",
-             "active_section", "filepath", "report", "is_dirty", "runtime_data", "location_absolute", "has_data",
-             "is_runtime_data", "version"}
+_VOLATILE = {
+    "rna_type",
+    "session_uid",
+    "is_evaluated",
+    "original",
+    "depsgraph",
+    "bl_rna",
+    "is_updated",
+    "is_updated_data",
+    "preview",
+    "id_properties_ui",
+    "asset_data",
+    "users",
+    "dimensions",
+    "tag",
+    "active_section",
+    "filepath",
+    "report",
+    "is_dirty",
+    "runtime_data",
+    "location_absolute",
+    "has_data",
+    "is_runtime_data",
+    "version",
+}
 
 
 def written_down():
@@ -165,7 +189,12 @@ def written_down():
     for name in dir(bpy.data):
         collection = getattr(bpy.data, name)
         if isinstance(collection, bpy.types.bpy_prop_collection) and name not in {
-                "all_ids", "window_managers", "screens", "workspaces", "brushes"}:
+            "all_ids",
+            "window_managers",
+            "screens",
+            "workspaces",
+            "brushes",
+        }:
             state[name] = {each.name_full: _struct(each, 0) for each in collection}
     return state
 
@@ -192,14 +221,19 @@ def _struct(thing, depth):
 
 
 def _value(value, prop, depth):
-    if isinstance(value, bpy.types.ID) and depth is not None and not (
-            isinstance(value, bpy.types.NodeTree) and value.is_embedded_data):
+    if (
+        isinstance(value, bpy.types.ID)
+        and depth is not None
+        and not (isinstance(value, bpy.types.NodeTree) and value.is_embedded_data)
+    ):
         return value.name_full
     if isinstance(value, bpy.types.bpy_prop_collection):
         if depth > 5:
             return len(value)
-        return [item.name_full if isinstance(item, bpy.types.ID) and not _embedded(item) else _struct(item, depth + 1)
-                for item in value]
+        return [
+            item.name_full if isinstance(item, bpy.types.ID) and not _embedded(item) else _struct(item, depth + 1)
+            for item in value
+        ]
     if isinstance(value, (bpy.types.Node, bpy.types.NodeSocket)):
         return value.name if isinstance(value, bpy.types.Node) else f"{value.node.name}.{value.identifier}"
     if isinstance(value, bpy.types.bpy_struct):
@@ -220,9 +254,13 @@ def _embedded(item):
 def differences(before, after, path=""):
     """Where two states differ, a line each."""
     if isinstance(before, dict) and isinstance(after, dict):
-        return [line for key in sorted({*before, *after}, key=str)
-                for line in differences(before.get(key), after.get(key), f"{path}/{key}")]
+        return [
+            line
+            for key in sorted({*before, *after}, key=str)
+            for line in differences(before.get(key), after.get(key), f"{path}/{key}")
+        ]
     if isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
-        return [line for index, pair in enumerate(zip(before, after))
-                for line in differences(*pair, f"{path}[{index}]")]
+        return [
+            line for index, pair in enumerate(zip(before, after)) for line in differences(*pair, f"{path}[{index}]")
+        ]
     return [] if before == after else [f"{path}: {before!r:.200} -> {after!r:.200}"]

@@ -53,12 +53,32 @@ def download_wheels():
         python, abi, platform = name.removesuffix(".whl").split("-")[-3:]
         # Through a folder of its own, so that an interrupted download is never taken for a wheel.
         with tempfile.TemporaryDirectory(dir=folder, prefix=".download-") as partial:
-            subprocess.run([
-                sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps",
-                "--only-binary=:all:", "--require-hashes", "-r", ROOT / "requirements-wheels.txt", "--dest", partial,
-                "--implementation", "cp", "--python-version", python.removeprefix("cp"), "--abi", abi,
-                "--platform", platform,
-            ], check=True)
+            subprocess.run(
+                [
+                    sys.executable,
+                    "-m",
+                    "pip",
+                    "download",
+                    "--quiet",
+                    "--disable-pip-version-check",
+                    "--no-deps",
+                    "--only-binary=:all:",
+                    "--require-hashes",
+                    "-r",
+                    ROOT / "requirements-wheels.txt",
+                    "--dest",
+                    partial,
+                    "--implementation",
+                    "cp",
+                    "--python-version",
+                    python.removeprefix("cp"),
+                    "--abi",
+                    abi,
+                    "--platform",
+                    platform,
+                ],
+                check=True,
+            )
             (Path(partial) / name).replace(folder / name)
 
 
@@ -92,6 +112,7 @@ def use_temporary_preferences():
 def install(path):
     """Install a zip by Blender's operator, enable it, and return the package's module."""
     import bpy
+
     bpy.ops.extensions.package_install_files(filepath=str(path), repo="user_default", enable_on_install=True)
     if MODULE not in bpy.context.preferences.addons:
         raise RuntimeError(f"Blender could not enable {path}; its output above says why")

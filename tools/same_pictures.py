@@ -16,7 +16,7 @@ from pathlib import Path
 if sys.argv[1:2] == ["--render"]:  # the tools of the tree that is named, not those beside this file
     sys.path[0] = str(Path(sys.argv[2]) / "tools")
 
-import extension  # noqa: E402
+import extension
 
 SIZE, SAMPLES = (256, 144), 4
 SHOTS = {
@@ -71,8 +71,12 @@ def rendered_by(root, names):
     """As render(), in a process of its own."""
     with tempfile.TemporaryDirectory(prefix="afterlight-same-") as folder:
         out = Path(folder) / "found.json"
-        subprocess.run([sys.executable, __file__, "--render", str(root), str(out), *names], check=True, text=True,
-                       stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [sys.executable, __file__, "--render", str(root), str(out), *names],
+            check=True,
+            text=True,
+            stdout=subprocess.DEVNULL,
+        )
         return json.loads(out.read_text())
 
 
@@ -85,7 +89,9 @@ def main():
         sys.exit(__doc__)
     revision, names = sys.argv[1], sys.argv[2:] or list(SHOTS)
     with tempfile.TemporaryDirectory(prefix="afterlight-before-") as before:
-        archive = subprocess.run(["git", "-C", str(extension.ROOT), "archive", revision], check=True, stdout=subprocess.PIPE)
+        archive = subprocess.run(
+            ["git", "-C", str(extension.ROOT), "archive", revision], check=True, stdout=subprocess.PIPE
+        )
         subprocess.run(["tar", "-x", "-C", before], input=archive.stdout, check=True)
         if (extension.ROOT / "wheels").exists():  # they have been downloaded once
             (Path(before) / "wheels").symlink_to(extension.ROOT / "wheels")

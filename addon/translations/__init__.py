@@ -20,9 +20,13 @@ def say(text, *values):
 
 
 def register():
-    bpy.app.translations.register(__name__, {
-        language: {(context, text): translation for text, translation in texts.items() for context in CONTEXTS}
-        for language, texts in LANGUAGES.items()})
+    bpy.app.translations.register(
+        __name__,
+        {
+            language: {(context, text): translation for text, translation in texts.items() for context in CONTEXTS}
+            for language, texts in LANGUAGES.items()
+        },
+    )
 
 
 def unregister():

@@ -12,11 +12,12 @@ import os
 import sys
 
 sys.path[:0] = [os.path.join(os.getcwd(), folder) for folder in ("tools", "tests")]
-import extension  # noqa: E402
+import extension
 
 extension.start()
-import bpy  # noqa: E402
-from scenes import box, simple_tree  # noqa: E402
+import bpy
+
+from scenes import box, simple_tree
 
 bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 scene = box(bpy.context.scene)

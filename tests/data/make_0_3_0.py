@@ -4,19 +4,21 @@
     git worktree add /tmp/old 4dc2e45 && cd /tmp/old
     python <this file> <path of the .blend>
 
-Two lit scenes: "Views" with two automatic views, glossy light and a compositor tree that 0.3.0 made, "Paper" with one view in a
-compositor of the user's own. "Precious" is the user's, with a custom property of the name that 0.3.0 marked its own scenes by.
+Two lit scenes: "Views" with two automatic views, glossy light and a compositor tree that 0.3.0 made, "Paper" with one
+view in a compositor of the user's own. "Precious" is the user's, with a custom property of the name that 0.3.0 marked
+its own scenes by.
 """
 
 import os
 import sys
 
 sys.path[:0] = [os.path.join(os.getcwd(), folder) for folder in ("tools", "tests")]
-import extension  # noqa: E402
+import extension
 
 extension.start()
-import bpy  # noqa: E402
-from scenes import box, simple_tree  # noqa: E402
+import bpy
+
+from scenes import box, simple_tree
 
 bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 views = box(bpy.context.scene)

@@ -4,10 +4,11 @@
 import os
 import shutil
 
-import extension
 import pytest
 import steps
 from window import ROOT, Computer, Window
+
+import extension
 
 FOLDER = ROOT / "build" / "desktop"
 

@@ -17,12 +17,12 @@ sys.path[:0] = os.environ["AFTERLIGHT_TESTS"].split(os.pathsep)
 connection = socket.socket(fileno=int(os.environ["AFTERLIGHT_CONTROL"]))
 connection.setblocking(False)
 waiting = b""
-names = {"bpy": bpy}   # the globals of all that is sent
-events = []            # (name of Blender's handler, seconds, frame), as they happen
-spans = []             # [what of the extension runs, begin, end], by watch()
-ticks = []             # when the main thread came round to tick()
+names = {"bpy": bpy}  # the globals of all that is sent
+events = []  # (name of Blender's handler, seconds, frame), as they happen
+spans = []  # [what of the extension runs, begin, end], by watch()
+ticks = []  # when the main thread came round to tick()
 ticking = False
-TICK = 0.01            # seconds
+TICK = 0.01  # seconds
 
 
 def listen():
@@ -58,13 +58,18 @@ def answer(request):
 def note(name):
     def handler(scene, *_):
         events.append((name, time.perf_counter(), scene.frame_current))
+
     return bpy.app.handlers.persistent(handler)
 
 
 def area(kind):
     """(window, area, region) of the largest editor of a kind."""
-    found = [(window, each) for window in bpy.context.window_manager.windows for each in window.screen.areas
-             if each.type == kind]
+    found = [
+        (window, each)
+        for window in bpy.context.window_manager.windows
+        for each in window.screen.areas
+        if each.type == kind
+    ]
     window, largest = max(found, key=lambda pair: pair[1].width * pair[1].height)
     return window, largest, next(each for each in largest.regions if each.type == "WINDOW")
 
@@ -95,19 +100,22 @@ def happened(name):
 def remember():
     """Write down all that the file holds, for changed()."""
     import scenes
+
     names["remembered"] = scenes.written_down()
 
 
 def changed():
     """What in the file differs from when remember() was called, a line each."""
     import scenes
+
     return scenes.differences(names["remembered"], scenes.written_down())
 
 
 def watch(span, *path):
-    """From now on, note when a function of the extension begins and ends, as `span` in `spans`. path: of its module in the
-    extension, then the names that lead to it."""
+    """From now on, note when a function of the extension begins and ends, as `span` in `spans`. path: of its module in
+    the extension, then the names that lead to it."""
     import importlib
+
     owner = importlib.import_module(f"bl_ext.user_default.afterlight.addon.{path[0]}")
     for name in path[1:-1]:
         owner = getattr(owner, name)
@@ -120,6 +128,7 @@ def watch(span, *path):
             return function(*arguments, **options)
         finally:
             row[2] = time.perf_counter()
+
     setattr(owner, path[-1], watched)
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a timer, and
-how long of it were calls of ours.
+"""The longest stall of the interface by stage of a render: between two turns that Blender's main thread gives to a
+timer, and how long of it were calls of ours.
 
-    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [again] [opengl] [vulkan] [paper] [radiosity] [WIDTHxHEIGHT ...]
+    tools/desktop.sh .venv/bin/python tests/desktop/stalls.py [again] [opengl] [vulkan] [paper] [radiosity]
+    [WIDTHxHEIGHT ...]
 
 again: with the shaders that the driver has kept since the last time, as on a computer that has rendered before."""
 
@@ -11,25 +12,33 @@ import sys
 import time
 from itertools import product
 
-import extension
 import steps
 from window import ROOT, Computer, Window
+
+import extension
 
 CALL = "call"  # that the main thread makes for us
 # What is watched in the extension, from the outside in: a stall belongs to the innermost that runs.
 WATCHED = {
-    CALL: ("pipeline.turns", "_make"),
-    "save passes": ("pipeline.passes", "save"),
-    "load passes": ("pipeline.passes", "load"),
+    CALL: ("host.main_thread", "_make"),
+    "save passes": ("scene.passes", "save"),
+    "load passes": ("scene.passes", "load"),
     "wait": ("light.device", "wait"),
     "compile": ("light.device", "shader"),
     "read back": ("light.device", "read"),
-    "hand back": ("pipeline.engine", "AfterlightEngine", "_hand_back"),
+    "hand back": ("render.engine", "AfterlightEngine", "_hand_back"),
 }
 OF_METHOD = {
-    "PAPER": {name: ("light.pipeline", name) for name in ("upload", "pack", "merge", "gather", "upsample", "composite")},
-    "RADIOSITY": {"place views": ("pipeline.scout", "AfterlightScout", "_place"), "save views": ("pipeline.views", "save")} | {
-        name: ("light.views", name) for name in ("look", "upload", "pack", "radiate", "draw_table", "draw", "composite")}}
+    "PAPER": {name: ("light.paper", name) for name in ("upload", "pack", "merge", "gather", "upsample", "composite")},
+    "RADIOSITY": {
+        "place views": ("render.views_engine", "AfterlightScout", "_place"),
+        "save views": ("compositor.view_scenes", "save"),
+    }
+    | {
+        name: ("light.radiosity", name)
+        for name in ("look", "upload", "pack", "radiate", "draw_table", "draw", "composite")
+    },
+}
 
 
 def stage_at(moment, spans, begin, end):
@@ -72,7 +81,10 @@ def stalls(window):
 def main():
     backends = [word for word in sys.argv[1:] if word in ("opengl", "vulkan")] or ["opengl", "vulkan"]
     methods = [word.upper() for word in sys.argv[1:] if word.upper() in OF_METHOD] or list(OF_METHOD)
-    sizes = [tuple(map(int, word.split("x"))) for word in sys.argv[1:] if word[0].isdigit()] or [(640, 360), (1280, 720)]
+    sizes = [tuple(map(int, word.split("x"))) for word in sys.argv[1:] if word[0].isdigit()] or [
+        (640, 360),
+        (1280, 720),
+    ]
     for backend in backends:
         folder = ROOT / "build" / "stalls" / backend
         kept = ROOT / "build" / "stalls" / f"{backend}.cache"
@@ -94,8 +106,11 @@ def main():
                 window.run(steps.use, method)
                 window.run(steps.long_gather, width, height)
                 for run in ("first", "second"):
-                    print(f"\n{backend}, {method.title()}, {width} x {height}, {run} render: longest stall, longest call of ours, "
-                          "seconds in all")
+                    print(
+                        f"\n{backend}, {method.title()}, {width} x {height}, {run} render: longest stall, longest "
+                        "call of ours, "
+                        "seconds in all"
+                    )
                     for stage, seconds in stalls(window).items():
                         print(f"  {stage:20}", *(f"{each:8.3f}" for each in seconds), flush=True)
         finally:

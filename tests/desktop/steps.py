@@ -7,7 +7,7 @@ import numpy as np
 import OpenEXR
 
 ENABLED = "afterlight.enabled"
-BESIDE_THE_BOX = 110       # pixels from the left, on the panel's name
+BESIDE_THE_BOX = 110  # pixels from the left, on the panel's name
 MODULE = "bl_ext.user_default.afterlight"
 
 
@@ -30,6 +30,7 @@ def new_box(window):
 
 def make_box():
     import scenes
+
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
@@ -86,8 +87,8 @@ def long_gather(width=640, height=360):
 
 def into_the_gather(window):
     """Render, until it is in the middle of long_gather()."""
-    window.value("watch('gather', 'light.pipeline', 'gather')")
-    window.value("watch('gather', 'light.views', 'draw')")
+    window.value("watch('gather', 'light.paper', 'gather')")
+    window.value("watch('gather', 'light.radiosity', 'draw')")
     window.start_render()
     window.wait("'gather' in running()", 120)
     time.sleep(1)
@@ -120,11 +121,16 @@ def render_file(computer, blend, output, *arguments, frame=1):
     return read_rgb(output.with_name(f"{output.name}{frame:04}.exr"))
 
 
-SETTINGS = ("import bpy; s = bpy.context.scene.render.image_settings; s.media_type = 'IMAGE'; "
-            "s.file_format = 'OPEN_EXR'; s.color_depth = '32'; s.exr_codec = 'NONE'")
+SETTINGS = (
+    "import bpy; s = bpy.context.scene.render.image_settings; s.media_type = 'IMAGE'; "
+    "s.file_format = 'OPEN_EXR'; s.color_depth = '32'; s.exr_codec = 'NONE'"
+)
 
 
 def read_rgb(path):
-    channels = {name: channel.pixels for part in OpenEXR.File(str(path), separate_channels=True).parts
-                for name, channel in part.channels.items()}
+    channels = {
+        name: channel.pixels
+        for part in OpenEXR.File(str(path), separate_channels=True).parts
+        for name, channel in part.channels.items()
+    }
     return np.stack([channels[axis] for axis in "RGB"], axis=-1)

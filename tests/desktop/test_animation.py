@@ -10,6 +10,7 @@ FRAMES = range(1, 9)
 def animate(folder):
     """Keyframes on the camera and on our settings."""
     import scenes
+
     scene = bpy.context.scene
     scenes.set_format(scene)
     scene.frame_start, scene.frame_end = 1, 8
@@ -81,6 +82,7 @@ def test_settings_changed_meanwhile(window, afterlight):
 
 def still_frames(folder):
     import scenes
+
     scene = bpy.context.scene
     scenes.set_format(scene)
     scene.frame_start, scene.frame_end = 1, 6

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An animation whose frames are averaged, of shiny surfaces, in the window: the frames of `blender -b -a`, the first one's nine
-gathers among them."""
+"""An animation whose frames are averaged, of shiny surfaces, in the window: the frames of `blender -b -a`, the first
+one's nine gathers among them."""
 
 import numpy as np
 import steps
@@ -10,10 +10,11 @@ FRAMES = range(1, 4)
 
 def animate(folder):
     import scenes
+
     scene = bpy.context.scene
     scenes.set_format(scene)
     scene.frame_start, scene.frame_end = 1, 3
-    scene.frame_set(1)     # where the animation begins: only the operator tells it from a single frame
+    scene.frame_set(1)  # where the animation begins: only the operator tells it from a single frame
     scene.render.filepath = folder + "/window_"
     settings = scene.afterlight
     settings.method, settings.views, settings.draws, settings.bounces = "RADIOSITY", "CAMERA", 2, 2
@@ -40,5 +41,5 @@ def test_averaged_frames(window, afterlight):
     window.wait(f"happened('render_complete') > {before}")
     for frame, picture in zip(FRAMES, expected):
         found = steps.read_rgb(folder / f"window_{frame:04}.exr")
-        # What drawing in bands rounds may choose another emitter now and then (docs/desktop.md).
+        # What drawing in bands rounds may choose another emitter now and then (docs/blender/desktop.md).
         assert np.abs(found - picture).mean() < 1e-4 * picture.mean(), (frame, np.abs(found - picture).mean())

@@ -25,9 +25,13 @@ def quick():
 def escape(window):
     """Press ESC; seconds until Blender says that the render is cancelled."""
     cancelled = window.value("happened('render_cancel')")
-    # xdotool itself says when, on the clock that Blender's Python reads: starting a process can take as long as the rest.
-    start = float(window.xdotool("exec", "--sync", "--terminator", "then", "cat", "/proc/uptime", "then",
-                                 "key", "Escape").split()[0])
+    # xdotool itself says when, on the clock that Blender's Python reads: starting a process can take as long as the
+    # rest.
+    start = float(
+        window.xdotool(
+            "exec", "--sync", "--terminator", "then", "cat", "/proc/uptime", "then", "key", "Escape"
+        ).split()[0]
+    )
     window.wait(f"happened('render_cancel') > {cancelled} and not rendering()")
     return window.value("[event[1] for event in events if event[0] == 'render_cancel'][-1]") - start
 

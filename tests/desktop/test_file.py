@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What people do to a ticked file: two scenes, two view layers, the compositor edited by hand, unticked, and the extension
-switched off and removed while the file is open."""
+"""What people do to a ticked file: two scenes, two view layers, the compositor edited by hand, unticked, and the
+extension switched off and removed while the file is open."""
 
 import numpy as np
 import steps
@@ -9,6 +9,7 @@ import steps
 def layers_and_scenes():
     """Two view layers laid over each other, and a second scene that is ticked too."""
     import scenes
+
     scene = bpy.context.scene
     scenes.layered_tree(scene)
     scene.afterlight.enabled = True
@@ -50,7 +51,6 @@ def compositor_open():
 
 
 def select_our_mix_node():
-    import scenes
     tree = bpy.context.scene.compositing_node_group
     for node in tree.nodes:
         node.select = node.bl_idname == "ShaderNodeMix"

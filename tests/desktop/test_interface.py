@@ -9,19 +9,24 @@ F3 = "69"  # its key code, as with F12 in window.py
 
 
 def say_in(language):
-    """Switch the interface to a language. (number of texts in the table, those that come out untranslated, what is said of a
-    scene) Blender's own words go before ours where it has the text too."""
+    """Switch the interface to a language. (number of texts in the table, those that come out untranslated, what is
+    said of a scene) Blender's own words go before ours where it has the text too."""
     import bl_ext.user_default.afterlight as afterlight
+
     view = bpy.context.preferences.view
     view.language = language
     view.use_translate_interface = view.use_translate_tooltips = view.use_translate_reports = True
     translated = bpy.app.translations.pgettext_iface
     german = afterlight.addon.translations.de_DE.TEXTS
-    other = [text for text, words in german.items() for context in ("*", "Operator")
-             if translated(text, context) == text != words]
+    other = [
+        text
+        for text, words in german.items()
+        for context in ("*", "Operator")
+        if translated(text, context) == text != words
+    ]
     scene = bpy.context.scene
     camera, scene.camera = scene.camera, None
-    (found,) = afterlight.addon.pipeline.checks.findings(scene)
+    (found,) = afterlight.addon.diagnosis.checks.findings(scene)
     scene.camera = camera
     return len(german), other, found.text
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of the panel, for docs/desktop.md, and that it can be worked."""
+"""Pictures of the panel, for docs/blender/desktop.md, and that it can be worked."""
 
 import time
 

@@ -38,8 +38,10 @@ def test_picture_is_that_of_the_command_line(window, afterlight, method):
             assert abs(lit.mean() / other.mean() - 1) < 0.02
             # and, where the views are those of the other's file, which emitter is drawn: other noise of the same light
             same_views = steps.render_file(window.computer, blend, window.computer.folder / f"views_of_{backend}")
-            print(f"views of {backend}: {abs(same_views.mean() / other.mean() - 1):.2g} in the mean, "
-                  f"{np.abs(same_views - other).mean() / other.mean():.2g} a pixel")
+            print(
+                f"views of {backend}: {abs(same_views.mean() / other.mean() - 1):.2g} in the mean, "
+                f"{np.abs(same_views - other).mean() / other.mean():.2g} a pixel"
+            )
             assert abs(same_views.mean() / other.mean() - 1) < 0.005
             assert np.abs(same_views - other).mean() < 0.05 * other.mean()
     LIT[method, window.computer.backend] = lit, window.computer.folder / f"lit_{method}.blend"

@@ -4,6 +4,7 @@
 import numpy as np
 import steps
 
+
 def change():
     settings = bpy.context.scene.afterlight
     settings.strength, settings.start, settings.samples = 0.5, "FULL", 64

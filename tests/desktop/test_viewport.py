@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light in a rendered viewport: it comes and goes, is a render's, follows what is edited, comes to rest, and leaves nothing behind."""
+"""The light in a rendered viewport: it comes and goes, is a render's, follows what is edited, comes to rest, and
+leaves nothing behind."""
 
 import time
 
@@ -22,14 +23,17 @@ def show_box(scale="4"):
     space.overlay.show_overlays = space.show_gizmo = False
     names["drawn"] = 0
     if "count_drawn" not in names:
+
         def count_drawn():
             names["drawn"] += 1
+
         names["count_drawn"] = count_drawn
         bpy.types.SpaceView3D.draw_handler_add(count_drawn, (), "WINDOW", "POST_VIEW")
 
 
 def handlers():
-    import bl_ext.user_default.afterlight.addon.viewport.handlers as found
+    import bl_ext.user_default.afterlight.addon.viewport.draw_handlers as found
+
     names["viewports"] = found
 
 
@@ -55,7 +59,9 @@ def wait_for_light(window, timeout=240):
         found = window.run(progress)
         if found and all(done == wanted for done, wanted, _ in found) and window.value("not viewports._waiting"):
             return found
-        assert time.monotonic() < end, f"no light after {timeout} s: {found}\n{window.value('str(viewports._refused)')}\n{window.log()[-2000:]}"
+        assert time.monotonic() < end, (
+            f"no light after {timeout} s: {found}\n{window.value('str(viewports._refused)')}\n{window.log()[-2000:]}"
+        )
 
 
 def picture(window, name):
@@ -91,7 +97,7 @@ def test_it_is_switched_by_mouse_and_comes_to_rest(window, afterlight):
     window.point_at(TOGGLE, along=200)
     window.click()
     window.wait("bpy.context.scene.afterlight.use_viewport")
-    (_, wanted, views), = wait_for_light(window)
+    ((_, wanted, views),) = wait_for_light(window)
     lit = picture(window, "viewport_lit")
     assert wanted == 9 and views >= 1
     assert lit.mean() > 1.15 * before.mean(), "the walls light one another"
@@ -110,10 +116,13 @@ def test_it_is_switched_by_mouse_and_comes_to_rest(window, afterlight):
 def camera_frame():
     """The camera's frame in the region, in pixels: left, bottom, right, top."""
     from bpy_extras.view3d_utils import location_3d_to_region_2d
+
     _, editor, region = area("VIEW_3D")
     camera = bpy.context.scene.camera
-    corners = [location_3d_to_region_2d(region, editor.spaces.active.region_3d, camera.matrix_world @ corner)
-               for corner in camera.data.view_frame(scene=bpy.context.scene)]
+    corners = [
+        location_3d_to_region_2d(region, editor.spaces.active.region_3d, camera.matrix_world @ corner)
+        for corner in camera.data.view_frame(scene=bpy.context.scene)
+    ]
     return [min(c.x for c in corners), min(c.y for c in corners), max(c.x for c in corners), max(c.y for c in corners)]
 
 
@@ -169,7 +178,8 @@ def test_a_lamp_that_a_script_moves_shows(window, afterlight):
 
 
 CHANGES = {
-    "material": "bpy.data.materials['Red'].node_tree.nodes['Principled BSDF'].inputs['Base Color'].default_value = (.1, .1, .8, 1)",
+    "material": "bpy.data.materials['Red'].node_tree.nodes['Principled BSDF']"
+    ".inputs['Base Color'].default_value = (.1, .1, .8, 1)",
     "object": "bpy.data.objects['Wall.002'].location.y -= 0.5",
     "hidden": "bpy.data.objects['Wall.004'].hide_set(True)",
     "frame": "bpy.context.scene.frame_set(7)",
@@ -178,7 +188,7 @@ CHANGES = {
     "radiosity": "bpy.context.scene.afterlight.method = 'RADIOSITY'",
     "free view": "space.region_3d.view_perspective, space.region_3d.view_rotation = 'PERSP', (0.83, 0.52, 0.09, 0.15)",
     "orthographic": "space.region_3d.view_perspective, space.region_3d.view_distance = 'ORTHO', 8; "
-                    "space.region_3d.view_rotation = (0.83, 0.52, 0.09, 0.15)",
+    "space.region_3d.view_rotation = (0.83, 0.52, 0.09, 0.15)",
     "overlays": "space.overlay.show_overlays = True",
     "world": "space.shading.use_scene_world_render = False",
     "resolution": "bpy.context.scene.render.preview_pixel_size = '8'",
@@ -192,11 +202,13 @@ def operate(code):
         exec(code, {"bpy": bpy})
 
 
-@pytest.mark.parametrize("first", range(0, len(CHANGES), 4))  # no more at once, for the sake of Vulkan's software driver (docs/desktop.md)
+@pytest.mark.parametrize(
+    "first", range(0, len(CHANGES), 4)
+)  # no more at once, for the sake of Vulkan's software driver (docs/blender/desktop.md)
 def test_all_that_is_changed_is_followed(window, afterlight, first):
     """One thing after another: each is lit anew, and is at rest afterwards."""
     open_lit_box(window)
-    for name, code in list(CHANGES.items())[first:first + 4]:
+    for name, code in list(CHANGES.items())[first : first + 4]:
         window.run(change, code)
         time.sleep(0.5)
         wait_for_light(window)
@@ -205,7 +217,9 @@ def test_all_that_is_changed_is_followed(window, afterlight, first):
         plain = picture(window, "viewport_plain")
         window.value("setattr(bpy.context.scene.afterlight, 'strength', 1)")
         more = lit - plain
-        assert (more > 5).mean() > 0.01 and np.percentile(more, 1) > -4, f"{name}: {(more > 5).mean()}, {np.percentile(more, 1)}"
+        assert (more > 5).mean() > 0.01 and np.percentile(more, 1) > -4, (
+            f"{name}: {(more > 5).mean()}, {np.percentile(more, 1)}"
+        )
         assert window.value("str(viewports._refused)") == "{}", name
 
 
@@ -229,7 +243,10 @@ def test_quad_view_local_view_and_another_size(window, afterlight):
     window.wait("len(viewports._regions) == 1", 60)
     wait_for_light(window)
 
-    window.run(change, "bpy.context.view_layer.objects.active = bpy.data.objects['Wall']; bpy.data.objects['Wall'].select_set(True)")
+    window.run(
+        change,
+        "bpy.context.view_layer.objects.active = bpy.data.objects['Wall']; bpy.data.objects['Wall'].select_set(True)",
+    )
     window.run(operate, "bpy.ops.view3d.localview()")
     wait_for_light(window)
     window.run(operate, "bpy.ops.view3d.localview()")
@@ -251,8 +268,11 @@ def test_other_shadings_are_left_alone(window, afterlight):
 def test_a_second_viewport_undo_and_another_file(window, afterlight):
     """Nothing is kept for what is not shown."""
     open_lit_box(window, scale="8")
-    window.run(change, "timeline = area('DOPESHEET_EDITOR')[1]; timeline.type = 'VIEW_3D'; "
-                       "timeline.spaces.active.shading.type = 'RENDERED'")
+    window.run(
+        change,
+        "timeline = area('DOPESHEET_EDITOR')[1]; timeline.type = 'VIEW_3D'; "
+        "timeline.spaces.active.shading.type = 'RENDERED'",
+    )
     window.wait("len(viewports._regions) == 2", 60)
     wait_for_light(window)
     assert window.value("len(viewports._further)") == 2
@@ -284,17 +304,24 @@ def test_a_render_and_a_viewport_go_together(window, afterlight):
 
 
 def refuse():
-    from bl_ext.user_default.afterlight.addon.light import device
+    from bl_ext.user_default.afterlight.addon.gather import device
+
     names["texture"] = device.texture
 
     def texture(*_, **__):
-        raise device.GpuUnavailable("The GPU has no memory for a texture of {} x {}. Use a coarser start resolution, or lower the render "
-                                    "resolution", 7, 7)
+        raise device.GpuUnavailable(
+            "The GPU has no memory for a texture of {} x {}. Use a coarser start resolution, or lower the render "
+            "resolution",
+            7,
+            7,
+        )
+
     device.texture = texture
 
 
 def refuse_no_more():
-    from bl_ext.user_default.afterlight.addon.light import device
+    from bl_ext.user_default.afterlight.addon.gather import device
+
     device.texture = names["texture"]
 
 
@@ -310,7 +337,9 @@ def test_a_gpu_that_refuses_switches_it_off_with_a_message(window, afterlight):
     finally:
         window.run(refuse_no_more)
     window.key("Escape")  # the message
-    window.run(change, "bpy.context.scene.afterlight.use_viewport = False; bpy.context.scene.afterlight.use_viewport = True")
+    window.run(
+        change, "bpy.context.scene.afterlight.use_viewport = False; bpy.context.scene.afterlight.use_viewport = True"
+    )
     wait_for_light(window)
     assert window.value("viewports.problem(bpy.context.scene)") == ""
 
@@ -318,10 +347,14 @@ def test_a_gpu_that_refuses_switches_it_off_with_a_message(window, afterlight):
 def count_textures():
     """Textures of ours, and off-screen pictures, that are there now."""
     import gc
+
     import gpu
+
     gc.collect()
     device = viewports.light.device
-    return [sum(isinstance(each, kind) for each in gc.get_objects()) for kind in (device.Texture, gpu.types.GPUOffScreen)]
+    return [
+        sum(isinstance(each, kind) for each in gc.get_objects()) for kind in (device.Texture, gpu.types.GPUOffScreen)
+    ]
 
 
 def shake(number):
@@ -330,7 +363,8 @@ def shake(number):
 
 
 def test_no_redraw_leaves_textures_behind(window, afterlight, computer):
-    """500 redraws, each with the lamp elsewhere. (Vulkan's software driver keeps what each dispatch took: docs/desktop.md.)"""
+    """500 redraws, each with the lamp elsewhere. (Vulkan's software driver keeps what each dispatch took:
+    docs/blender/desktop.md.)"""
     redraws = 500 if computer.backend == "opengl" else 40
     open_box(window, scale="8")
     window.value("setattr(bpy.context.scene.afterlight, 'draws', 1)")

@@ -17,9 +17,11 @@ def look_closer():
 def placed():
     """[(location, rotation)] of the views, and [(mark, whether rendered at rest)] of their scenes."""
     held = [each.scene for each in bpy.context.scene.afterlight.view_scenes]
-    return [[(*view.camera.location, *view.camera.rotation_quaternion) for view in held[1:]],
-            [(view.afterlight.role.lower(), view.view_layers[0].use) for view in held],
-            len(held[0]["placed"]["poses"]) // 16]
+    return [
+        [(*view.camera.location, *view.camera.rotation_quaternion) for view in held[1:]],
+        [(view.afterlight.role.lower(), view.view_layers[0].use) for view in held],
+        len(held[0]["placed"]["poses"]) // 16,
+    ]
 
 
 def move_camera():
@@ -32,9 +34,11 @@ def turn_camera():
     scene.camera.location.x = 0.5
 
 
-WRITE = ("import bpy, json, sys; bpy.context.scene.frame_set(1); "
-         "bpy.app.handlers.render_complete.append(lambda *_: print('VIEWS', json.dumps([[*view.scene.camera.location, "
-         "*view.scene.camera.rotation_quaternion] for view in bpy.context.scene.afterlight.view_scenes][1:])))")
+WRITE = (
+    "import bpy, json, sys; bpy.context.scene.frame_set(1); "
+    "bpy.app.handlers.render_complete.append(lambda *_: print('VIEWS', json.dumps([[*view.scene.camera.location, "
+    "*view.scene.camera.rotation_quaternion] for view in bpy.context.scene.afterlight.view_scenes][1:])))"
+)
 
 
 def test_views_are_placed_as_on_the_command_line(window, afterlight):
@@ -49,7 +53,9 @@ def test_views_are_placed_as_on_the_command_line(window, afterlight):
     assert 1 <= count <= 5 and len(states) == 6
     assert [use for _, use in states] == [True] + [False] * 5, "at rest no view is rendered"
     lit = steps.result(window, "views")
-    output = window.computer.headless(path, "--python-expr", WRITE, "-o", window.computer.folder / "views_####", "-f", 1)
+    output = window.computer.headless(
+        path, "--python-expr", WRITE, "-o", window.computer.folder / "views_####", "-f", 1
+    )
     apart = json.loads(next(line for line in output.splitlines() if line.startswith("VIEWS"))[6:])
     np.testing.assert_allclose(apart[:count], poses[:count], atol=1e-6)
     assert np.isfinite(lit).all()

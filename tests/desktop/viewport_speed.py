@@ -1,39 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the light in a viewport costs beside EEVEE's own drawing, stage by stage: of a redraw while a lamp or the view moves, and of one
-at rest.
+"""What the light in a viewport costs beside EEVEE's own drawing, stage by stage: of a redraw while a lamp or the view
+moves, and of one at rest.
 
-    PYTHONPATH=tests/desktop:tools tools/desktop.sh .venv/bin/python tests/desktop/viewport_speed.py [opengl] [vulkan] [FRAMES]
+    PYTHONPATH=tests/desktop:tools tools/desktop.sh .venv/bin/python tests/desktop/viewport_speed.py [opengl] [vulkan]
+    [FRAMES]
 
-The region has 1180 x 786 pixels, as many as 1280 x 720. After each stage the GPU is waited for, so that times are its own; they are
-medians, over EEVEE's: one sample of the whole region, drawn in the same run."""
+The region has 1180 x 786 pixels, as many as 1280 x 720. After each stage the GPU is waited for, so that times are its
+own; they are medians, over EEVEE's: one sample of the whole region, drawn in the same run."""
 
 import shutil
 import sys
 import time
 from statistics import median
 
-import extension
 import steps
 import test_viewport as viewport
 from window import ROOT, Computer, Window
 
+import extension
+
 # (label, settings)
-CASES = (("Paper, Quarter, 64 samples", {"method": "PAPER", "start": "QUARTER", "samples": 64}),
-         ("Radiosity, Draft", {"method": "RADIOSITY", "start": "QUARTER", "draws": 8, "bounces": 3, "view_count": 4}),
-         ("Radiosity, Production", {"method": "RADIOSITY", "start": "HALF", "draws": 16, "bounces": 4, "view_count": 7}))
+CASES = (
+    ("Paper, Quarter, 64 samples", {"method": "PAPER", "start": "QUARTER", "samples": 64}),
+    ("Radiosity, Draft", {"method": "RADIOSITY", "start": "QUARTER", "draws": 8, "bounces": 3, "view_count": 4}),
+    ("Radiosity, Production", {"method": "RADIOSITY", "start": "HALF", "draws": 16, "bounces": 4, "view_count": 7}),
+)
 # What is timed: a stage, the module of the extension, and the names in it. A stage has what those within it do not.
-STAGES = (("passes", "viewport.eevee", "Film.draw"), ("split", "light.live", "split"), ("views, emitters", "light.live", "look"),
-          ("surfels", "light.live", "pack"), ("pyramid", "light.live", "merge"), ("gather", "light.live", "gather"),
-          ("gather", "light.live", "gather_all"), ("table of draws", "light.views", "draw_table"), ("history", "light.history", "History.go_on"),
-          ("smooth", "light.live", "smooth"), ("smooth", "light.live", "upsample"),
-          ("composite", "light.live", "composite"), ("mean", "light.live", "Mean.add"), ("place views", "viewport.further", "Further.place"))
+STAGES = (
+    ("passes", "viewport.offscreen", "Film.draw"),
+    ("split", "light.interactive", "split"),
+    ("views, emitters", "light.interactive", "look"),
+    ("surfels", "light.interactive", "pack"),
+    ("pyramid", "light.interactive", "merge"),
+    ("gather", "light.interactive", "gather"),
+    ("gather", "light.interactive", "gather_all"),
+    ("table of draws", "light.radiosity", "draw_table"),
+    ("history", "light.temporal", "History.go_on"),
+    ("smooth", "light.interactive", "smooth"),
+    ("smooth", "light.interactive", "upsample"),
+    ("composite", "light.interactive", "composite"),
+    ("mean", "light.interactive", "Mean.add"),
+    ("place views", "viewport.view_cache", "Further.place"),
+)
 EEVEE = "passes", "split"
 
 
 def time_stages(stages):
-    """From now on `spent` has, for each redraw in which there was something to do, its kind and the seconds of each stage."""
+    """From now on `spent` has, for each redraw in which there was something to do, its kind and the seconds of each
+    stage."""
     import importlib
     import time
+
     root = "bl_ext.user_default.afterlight.addon."
     device = importlib.import_module(root + "light.device")
     names["spent"], running = [], []
@@ -64,27 +81,34 @@ def time_stages(stages):
                     running[-1] += whole
                 if spent:
                     spent[-1][1][stage] = spent[-1][1].get(stage, 0.0) + own
+
         setattr(owner, name, watched)
 
     for stage, module, path in stages:
         watch(stage, module, path)
-    region = importlib.import_module(root + "viewport.region").Region
+    region = importlib.import_module(root + "viewport.region_light").Region
     for kind in ("_draft", "_gather"):
+
         def begun(self, *arguments, kind=kind, function=getattr(region, kind)):
             spent.append((kind, {}))
             return function(self, *arguments)
+
         setattr(region, kind, begun)
 
 
 def draw_alone(count):
     """Seconds that EEVEE takes for one sample of the whole region, each of so many times."""
     import time
+
     import gpu
     import numpy as np
     from bl_ext.user_default.afterlight.addon.viewport import eevee, region
+
     window, editor, shown = area("VIEW_3D")
     space = editor.spaces.active
-    stage = region.Stage(bpy.context.scene, bpy.context.view_layer, space, shown, space.region_3d, bpy.context.evaluated_depsgraph_get())
+    stage = region.Stage(
+        bpy.context.scene, bpy.context.view_layer, space, shown, space.region_3d, bpy.context.evaluated_depsgraph_get()
+    )
     off, found = gpu.types.GPUOffScreen(*stage.extent, format="RGBA16F"), []
     with eevee.drawing(stage):
         space.shading.render_pass = "COMBINED"
@@ -92,7 +116,9 @@ def draw_alone(count):
             matrix = stage.rv3d.view_matrix.copy()
             matrix[0][3] += 1e-3 * number  # or else there would be nothing to draw
             start = time.perf_counter()
-            off.draw_view3d(stage.scene, stage.layer, space, shown, matrix, stage.rv3d.window_matrix, do_color_management=False)
+            off.draw_view3d(
+                stage.scene, stage.layer, space, shown, matrix, stage.rv3d.window_matrix, do_color_management=False
+            )
             np.asarray(off.texture_color.read())
             found.append(time.perf_counter() - start)
     off.free()
@@ -121,9 +147,14 @@ def moved(window, move, count):
 
 
 def report(label, rows, alone):
-    stages = {stage: median(row.get(stage, 0.0) for row in rows) for stage in dict.fromkeys(stage for stage, *_ in STAGES)}
+    stages = {
+        stage: median(row.get(stage, 0.0) for row in rows) for stage in dict.fromkeys(stage for stage, *_ in STAGES)
+    }
     ours = sum(seconds for stage, seconds in stages.items() if stage not in EEVEE[:1])
-    print(f"\n{label}: EEVEE's passes {stages['passes'] / alone:.2f}, all else {ours / alone:.2f} of EEVEE's sample ({alone:.3f} s)")
+    print(
+        f"\n{label}: EEVEE's passes {stages['passes'] / alone:.2f}, all else {ours / alone:.2f} of EEVEE's sample "
+        f"({alone:.3f} s)"
+    )
     print("  " + ", ".join(f"{stage} {seconds / alone:.3f}" for stage, seconds in stages.items() if seconds))
     sys.stdout.flush()
 
@@ -140,7 +171,7 @@ def main():
             steps.new_box(window)
             window.run(viewport.show_box, "1")
             steps.tick(window)
-            window.run(viewport.handlers)
+            window.run(viewport.draw_handlers)
             window.run(time_stages, STAGES)
             for label, values in CASES:
                 viewport.switch_on(window)

@@ -25,10 +25,13 @@ class Computer:
         self.folder, self.backend = folder, backend
         folder.mkdir(parents=True)
         self.environment = {
-            "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": str(folder), "LANG": "C.UTF-8",
+            "PATH": "/usr/sbin:/usr/bin:/sbin:/bin",
+            "HOME": str(folder),
+            "LANG": "C.UTF-8",
             "BLENDER_USER_RESOURCES": str(folder / "user"),
             # The drivers on the processor, also where there is a graphics card: the same on every machine.
-            "LIBGL_ALWAYS_SOFTWARE": "1", "VK_LOADER_DRIVERS_SELECT": "*lvp*",
+            "LIBGL_ALWAYS_SOFTWARE": "1",
+            "VK_LOADER_DRIVERS_SELECT": "*lvp*",
         }
 
     def start(self, *command, **options):
@@ -66,19 +69,38 @@ class Window:
         ours, theirs = socket.socketpair()
         with self.log_path.open("a") as log, theirs:
             self.blender = self.computer.start(
-                "stdbuf", "-oL", "blender", "--gpu-backend", self.computer.backend, "--window-geometry", 0, 0, WIDTH, HEIGHT,
-                *arguments, "--python", HERE / "inside.py", stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                pass_fds=[theirs.fileno()], env=self.display | {
+                "stdbuf",
+                "-oL",
+                "blender",
+                "--gpu-backend",
+                self.computer.backend,
+                "--window-geometry",
+                0,
+                0,
+                WIDTH,
+                HEIGHT,
+                *arguments,
+                "--python",
+                HERE / "inside.py",
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                pass_fds=[theirs.fileno()],
+                env=self.display
+                | {
                     "AFTERLIGHT_CONTROL": str(theirs.fileno()),
-                    "AFTERLIGHT_TESTS": os.pathsep.join(map(str, [HERE.parent, ROOT / "tools"]))})
+                    "AFTERLIGHT_TESTS": os.pathsep.join(map(str, [HERE.parent, ROOT / "tools"])),
+                },
+            )
         self.socket, self.received = ours, b""
         self.value("bpy.app.version_string")
 
     def is_worn_out(self):
-        """Whether it has crashed, or soon will: Blender gives no descriptor set of lavapipe back, each is a mapping of the
-        process's memory, and Linux allows 65,530 of those (docs/desktop.md)."""
+        """Whether it has crashed, or soon will: Blender gives no descriptor set of lavapipe back, each is a mapping of
+        the process's memory, and Linux allows 65,530 of those (docs/blender/desktop.md)."""
         return self.blender.poll() is not None or (
-            Path(f"/proc/{self.blender.pid}/maps").read_bytes().count(b"\n") > MOST_MAPPINGS)
+            Path(f"/proc/{self.blender.pid}/maps").read_bytes().count(b"\n") > MOST_MAPPINGS
+        )
 
     def restart_blender(self):
         self._end(self.blender)
@@ -96,8 +118,18 @@ class Window:
     def _start_screen(self):
         number, theirs = os.pipe()
         self.screen = self.computer.start(
-            "Xvfb", "-displayfd", theirs, "-screen", 0, f"{WIDTH}x{HEIGHT}x24", "-nolisten", "tcp",
-            pass_fds=[theirs], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            "Xvfb",
+            "-displayfd",
+            theirs,
+            "-screen",
+            0,
+            f"{WIDTH}x{HEIGHT}x24",
+            "-nolisten",
+            "tcp",
+            pass_fds=[theirs],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         os.close(theirs)
         with os.fdopen(number) as answer:
             self.display = {"DISPLAY": ":" + answer.readline().strip()}
@@ -109,8 +141,8 @@ class Window:
         return self._ask({"expression": expression}, timeout)
 
     def run(self, function, *arguments, timeout=120):
-        """Call a function of a test inside Blender; it sees `bpy` and what inside.py holds, and nothing else. What it is
-        given and returns must fit into JSON."""
+        """Call a function of a test inside Blender; it sees `bpy` and what inside.py holds, and nothing else. What it
+        is given and returns must fit into JSON."""
         source = textwrap.dedent(inspect.getsource(function))
         return self._ask({"source": source, "name": function.__name__, "arguments": arguments}, timeout)
 
@@ -127,7 +159,9 @@ class Window:
             raise AssertionError(f"Blender does not answer after {timeout} s:\n{self.log()[-3000:]}") from error
         except ConnectionError as error:
             code = self.blender.wait(30)
-            raise AssertionError(f"Blender has ended with {code}:\n{self.log()[-3000:]}\n{self._crash_report()}") from error
+            raise AssertionError(
+                f"Blender has ended with {code}:\n{self.log()[-3000:]}\n{self._crash_report()}"
+            ) from error
         line, self.received = self.received.split(b"\n", 1)
         reply = json.loads(line)
         assert "error" not in reply, reply["error"]
@@ -199,7 +233,7 @@ class Window:
     def new_log(self):
         """What Blender has printed since this was last asked."""
         text = self.log()
-        new, self.read_to = text[self.read_to:], len(text)
+        new, self.read_to = text[self.read_to :], len(text)
         return new
 
     def finished_renders(self):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fuzz the installed extension: `python -m fuzz machine bl_ext.user_default.afterlight`, or for an hour `python -m fuzz hour`.
+"""Fuzz the installed extension: `python -m fuzz machine bl_ext.user_default.afterlight`, or for an hour `python -m
+fuzz hour`.
 
 Each kind runs in a process of its own with a seed; the journal of one that fails is printed.
 """
 
 import argparse
-import os
 import subprocess
 import sys
 import tempfile
@@ -37,14 +37,34 @@ def hour(minutes, seed):
             for kind in KINDS:
                 journal = Path(folder) / "journal.txt"
                 journal.unlink(missing_ok=True)
-                run = subprocess.run([sys.executable, "-X", "faulthandler", "-m", "fuzz", kind, "--seed", str(seed), "--journal",
-                                      str(journal)], capture_output=True, text=True)
+                run = subprocess.run(
+                    [
+                        sys.executable,
+                        "-X",
+                        "faulthandler",
+                        "-m",
+                        "fuzz",
+                        kind,
+                        "--seed",
+                        str(seed),
+                        "--journal",
+                        str(journal),
+                    ],
+                    capture_output=True,
+                    text=True,
+                )
                 runs += 1
                 if run.returncode:
                     failed += 1
                     steps = journal.read_text().splitlines()[-60:] if journal.exists() else []
-                    print(f"=== {kind}, seed {seed}: exit code {run.returncode}", *steps, run.stdout[-3000:], run.stderr[-5000:],
-                          sep="\n", flush=True)
+                    print(
+                        f"=== {kind}, seed {seed}: exit code {run.returncode}",
+                        *steps,
+                        run.stdout[-3000:],
+                        run.stderr[-5000:],
+                        sep="\n",
+                        flush=True,
+                    )
             seed += 1
     print(f"{runs - failed} passed, {failed} failed")
     return int(failed > 0)
@@ -52,23 +72,36 @@ def hour(minutes, seed):
 
 def one(options):
     import extension
+
     if options.module is None:
         module = extension.start()
     else:
         import bpy
+
         bpy.ops.preferences.addon_enable(module=options.module)
         module = sys.modules[options.module]
     from hypothesis import HealthCheck, Phase, settings
     from hypothesis.stateful import run_state_machine_as_test
-    common = settings(max_examples=options.examples or KINDS[options.kind], deadline=None, database=None, derandomize=False,
-                      suppress_health_check=list(HealthCheck), phases=(Phase.generate,), stateful_step_count=25, print_blob=False)
+
+    common = settings(
+        max_examples=options.examples or KINDS[options.kind],
+        deadline=None,
+        database=None,
+        derandomize=False,
+        suppress_health_check=list(HealthCheck),
+        phases=(Phase.generate,),
+        stateful_step_count=25,
+        print_blob=False,
+    )
     if options.kind == "machine":
         from . import machine
+
         kind = type("Machine", (machine.FileMachine,), {"module": module, "journal": options.journal})
         kind._hypothesis_internal_use_seed = options.seed
         run_state_machine_as_test(kind, settings=common)
     else:
         from . import claims
+
         claims.run(options.kind, module, common, options.seed, options.journal)
 
 

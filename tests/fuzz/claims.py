@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that claim anything: records, pointers and properties of random values, and pass files that are broken anywhere."""
+"""Files that claim anything: records, pointers and properties of random values, and pass files that are broken
+anywhere."""
 
 import os
 import tempfile
@@ -8,28 +9,59 @@ import bpy
 import numpy as np
 from hypothesis import given, seed
 from hypothesis import strategies as st
+
 from scenes import box
 
 from . import digest
 
-SCALARS = st.one_of(st.integers(-2**31, 2**31 - 1), st.floats(width=32), st.text(max_size=20), st.booleans())
-VALUES = st.recursive(st.one_of(SCALARS, st.lists(st.floats(), max_size=40), st.lists(st.integers(-2**31, 2**31 - 1), max_size=20)),
-                      lambda inner: st.dictionaries(st.sampled_from(["poses", "coverage", "clearance", "scene", "x"]), inner, max_size=4),
-                      max_leaves=6)
-NAMES = st.sampled_from(["enabled", "method", "view_count", "version", "helper", "role", "serves", "view_scenes", "own_tree", "set_aside",
-                         "own_camera", "view_cameras", "start", "denoise", "draws", "compositing_was_off"])
+SCALARS = st.one_of(st.integers(-(2**31), 2**31 - 1), st.floats(width=32), st.text(max_size=20), st.booleans())
+VALUES = st.recursive(
+    st.one_of(SCALARS, st.lists(st.floats(), max_size=40), st.lists(st.integers(-(2**31), 2**31 - 1), max_size=20)),
+    lambda inner: st.dictionaries(st.sampled_from(["poses", "coverage", "clearance", "scene", "x"]), inner, max_size=4),
+    max_leaves=6,
+)
+NAMES = st.sampled_from(
+    [
+        "enabled",
+        "method",
+        "view_count",
+        "version",
+        "helper",
+        "role",
+        "serves",
+        "view_scenes",
+        "own_tree",
+        "set_aside",
+        "own_camera",
+        "view_cameras",
+        "start",
+        "denoise",
+        "draws",
+        "compositing_was_off",
+    ]
+)
 POINTERS = st.sampled_from(["helper", "serves", "own_tree", "set_aside", "own_camera"])
 ROLES = st.sampled_from(["", "HELPER", "SCOUT", "VIEW", "nonsense"])
-CLAIMS = st.lists(st.one_of(st.tuples(st.just("raw"), NAMES, VALUES), st.tuples(st.just("pointer"), POINTERS, st.integers(0, 9)),
-                            st.tuples(st.just("role"), ROLES, st.integers(0, 9)), st.tuples(st.just("view"), st.just(""), st.integers(0, 9)),
-                            st.tuples(st.just("placed"), st.just(""), VALUES), st.tuples(st.just("layer"), st.just(""), VALUES),
-                            st.tuples(st.just("node"), st.just(""), VALUES), st.tuples(st.just("mark"), st.just(""), VALUES)),
-                  min_size=1, max_size=5)
+CLAIMS = st.lists(
+    st.one_of(
+        st.tuples(st.just("raw"), NAMES, VALUES),
+        st.tuples(st.just("pointer"), POINTERS, st.integers(0, 9)),
+        st.tuples(st.just("role"), ROLES, st.integers(0, 9)),
+        st.tuples(st.just("view"), st.just(""), st.integers(0, 9)),
+        st.tuples(st.just("placed"), st.just(""), VALUES),
+        st.tuples(st.just("layer"), st.just(""), VALUES),
+        st.tuples(st.just("node"), st.just(""), VALUES),
+        st.tuples(st.just("mark"), st.just(""), VALUES),
+    ),
+    min_size=1,
+    max_size=5,
+)
 FOLDER = tempfile.mkdtemp(prefix="afterlight-fuzz-")
 
 
 def run(kind, module, settings, number, journal):
     """Fuzz claims or files. settings: hypothesis'."""
+
     def note(text):
         if journal:
             with open(journal, "a") as file:
@@ -44,7 +76,9 @@ def run(kind, module, settings, number, journal):
 
     @seed(number)
     @settings
-    @given(st.binary(max_size=4096), st.integers(0, 2**31), st.sampled_from(["garbage", "cut", "flip", "empty", "header"]))
+    @given(
+        st.binary(max_size=4096), st.integers(0, 2**31), st.sampled_from(["garbage", "cut", "flip", "empty", "header"])
+    )
     def files(junk, at, damage):
         note(f"{damage} {at} {junk[:40]!r}")
         _files(module, junk, at, damage)
@@ -83,7 +117,11 @@ def _claims(module, made, ticked, reload):
     after = digest.of_the_user()
     lost = [line for line in digest.lost(before, after) if not any(name in line for name in marked)]
     assert not lost, lost
-    assert {"Scene", "Precious"} <= set(bpy.data.scenes.keys()) and "Mine" in bpy.data.node_groups and "Treasure" in bpy.data.objects
+    assert (
+        {"Scene", "Precious"} <= set(bpy.data.scenes.keys())
+        and "Mine" in bpy.data.node_groups
+        and "Treasure" in bpy.data.objects
+    )
 
 
 def _claim(scene, kind, name, value, marked):
@@ -92,7 +130,11 @@ def _claim(scene, kind, name, value, marked):
     if kind == "raw":
         scene.bl_system_properties_get(do_create=True)["afterlight"][name] = value
     elif kind == "pointer":
-        pool = {"own_tree": bpy.data.node_groups, "set_aside": bpy.data.node_groups, "own_camera": bpy.data.objects}.get(name)
+        pool = {
+            "own_tree": bpy.data.node_groups,
+            "set_aside": bpy.data.node_groups,
+            "own_camera": bpy.data.objects,
+        }.get(name)
         setattr(settings, name, target if pool is None else list(pool)[value % len(pool)])
     elif kind == "role":
         target.afterlight.role, target.afterlight.serves = name, scene
@@ -114,26 +156,29 @@ def _claim(scene, kind, name, value, marked):
 
 
 def _settle(module):
-    pipeline = module.addon.pipeline
+    addon = module.addon
     bpy.context.view_layer.update()
     for scene in bpy.data.scenes:
-        pipeline.checks.findings(scene)
-        if not scene.afterlight.role and pipeline.views.wanted(scene):
-            pipeline.views.placed(scene)
+        addon.diagnosis.checks.findings(scene)
+        if not scene.afterlight.role and addon.compositor.view_scenes.wanted(scene):
+            addon.compositor.view_scenes.placed(scene)
 
 
 def _files(module, junk, at, damage):
     """A broken pass file is a message, or its passes; never another exception. It is read as far as it goes."""
     import OpenEXR
+
     path = os.path.join(FOLDER, "passes.exr")
-    names = [f"ViewLayer.{name}.{axis}" for _, _, name, axes in module.addon.pipeline.passes.PASSES for axis in axes]
-    OpenEXR.File({"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage},
-                 {name: np.ones((5, 7), np.float32) for name in names}).write(path)
+    names = [f"ViewLayer.{name}.{axis}" for _, _, name, axes in module.addon.scene.passes.PASSES for axis in axes]
+    OpenEXR.File(
+        {"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage},
+        {name: np.ones((5, 7), np.float32) for name in names},
+    ).write(path)
     data = bytearray(open(path, "rb").read())
     if damage == "garbage":
         data = bytearray(junk)
     elif damage == "cut":
-        del data[at % len(data):]
+        del data[at % len(data) :]
     elif damage == "empty":
         data.clear()
     else:
@@ -142,7 +187,7 @@ def _files(module, junk, at, damage):
             data[(at + 131 * number) % end] ^= byte
     with open(path, "wb") as file:
         file.write(data)
-    passes, status = module.addon.pipeline.passes, module.addon.pipeline.status
+    passes, status = module.addon.scene.passes, module.addon.host.report
     for read in (lambda: passes.load(path, "ViewLayer", (0, 0, 7, 5)), lambda: passes.contents(path, ["ViewLayer"])):
         try:
             read()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever people do to a file, in any order, and what must hold after each step: nothing of the user's is altered, nothing of ours is
-left behind, no exception, and each picture is lit or plain."""
+"""Whatever people do to a file, in any order, and what must hold after each step: nothing of the user's is altered,
+nothing of ours is left behind, no exception, and each picture is lit or plain."""
 
 import os
 import tempfile
@@ -9,22 +9,40 @@ from contextlib import contextmanager
 import bpy
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+
 from scenes import box, compositor, layers_node, read_rgb, set_format
 
 from . import digest
 
 INDEX = st.integers(0, 7)
-SETTINGS = st.sampled_from([("method", "PAPER"), ("method", "RADIOSITY"), ("views", "CAMERA"), ("views", "AUTOMATIC"), ("views", "MANUAL"),
-                            ("view_count", 1), ("view_count", 2), ("use_glossy", True), ("use_glossy", False), ("denoise", "NODE"),
-                            ("denoise", "SMOOTH"), ("use_history", True), ("use_history", False), ("strength", 0.5), ("seed", 3)])
+SETTINGS = st.sampled_from(
+    [
+        ("method", "PAPER"),
+        ("method", "RADIOSITY"),
+        ("views", "CAMERA"),
+        ("views", "AUTOMATIC"),
+        ("views", "MANUAL"),
+        ("view_count", 1),
+        ("view_count", 2),
+        ("use_glossy", True),
+        ("use_glossy", False),
+        ("denoise", "NODE"),
+        ("denoise", "SMOOTH"),
+        ("use_history", True),
+        ("use_history", False),
+        ("strength", 0.5),
+        ("seed", 3),
+    ]
+)
 COPIES = st.sampled_from(["NEW", "EMPTY", "LINK_COPY", "FULL_COPY"])
 
 
 class FileMachine(RuleBasedStateMachine):
-    """One file, edited by somebody who does not care. journal: a file that gets each step before it is made, for crashes."""
+    """One file, edited by somebody who does not care. journal: a file that gets each step before it is made, for
+    crashes."""
 
     journal = None
-    module = None      # the extension
+    module = None  # the extension
 
     def __init__(self):
         super().__init__()
@@ -75,7 +93,7 @@ class FileMachine(RuleBasedStateMachine):
 
     def settle(self):
         bpy.context.view_layer.update()
-        self.module.addon.pipeline.handlers.follow_all()  # which a timer does in a window
+        self.module.addon.render.handlers.follow_all()  # which a timer does in a window
         bpy.ops.ed.undo_push(message="step")
 
     def scenes(self):
@@ -125,7 +143,7 @@ class FileMachine(RuleBasedStateMachine):
         scene = bpy.context.window.scene = self.scene(index)
         self.note(f"cures {index}")
         for _ in range(4):
-            for finding in self.module.addon.pipeline.checks.findings(scene) if scene.afterlight.enabled else ():
+            for finding in self.module.addon.diagnosis.checks.findings(scene) if scene.afterlight.enabled else ():
                 if finding.cure:
                     bpy.ops.afterlight.mend(cure=finding.cure)
         self.settle()
@@ -147,10 +165,12 @@ class FileMachine(RuleBasedStateMachine):
                 copy = bpy.context.window.scene
                 for _ in range(2):
                     bpy.context.view_layer.update()
-                    self.module.addon.pipeline.handlers.follow_all()
+                    self.module.addon.render.handlers.follow_all()
                 assert copy.name in bpy.data.scenes
                 bpy.context.window.scene = self.scenes()[0]  # a copy is the user's to remove, and what came with it
-                for thing in [thing for thing in copy.collection.objects if thing.name not in original.collection.objects]:
+                for thing in [
+                    thing for thing in copy.collection.objects if thing.name not in original.collection.objects
+                ]:
                     bpy.data.cameras.remove(thing.data)
                 bpy.data.scenes.remove(copy)
 
@@ -173,7 +193,7 @@ class FileMachine(RuleBasedStateMachine):
                 if camera:  # left by the user's deed
                     bpy.data.cameras.remove(camera.data)
 
-    @rule(index=INDEX, name=st.sampled_from(["Shot", "Scene", ".Afterlight (Scene)", "{0} %s \"", "Szene ß 景"]))
+    @rule(index=INDEX, name=st.sampled_from(["Shot", "Scene", ".Afterlight (Scene)", '{0} %s "', "Szene ß 景"]))
     def rename(self, index, name):
         with self.by_the_user(f"rename {index} {name}"):
             self.scene(index).name = name
@@ -237,7 +257,9 @@ class FileMachine(RuleBasedStateMachine):
             with self.by_the_user(f"group {index}"):
                 inner = bpy.data.node_groups.new("Inner", "CompositorNodeTree")
                 inner.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-                inner.links.new(layers_node(inner, scene).outputs["Image"], inner.nodes.new("NodeGroupOutput").inputs[0])
+                inner.links.new(
+                    layers_node(inner, scene).outputs["Image"], inner.nodes.new("NodeGroupOutput").inputs[0]
+                )
                 node = tree.nodes.new("CompositorNodeGroup")
                 node.node_tree = inner
                 tree.links.new(node.outputs[0], output.inputs[0])
@@ -338,12 +360,12 @@ class FileMachine(RuleBasedStateMachine):
     @invariant()
     def our_scenes_are_as_many_as_they_should(self):
         for scene in self.scenes():
-            served = [each for each in bpy.data.scenes if self.module.addon.pipeline.roles.source(each) == scene]
-            wanted = 1 + max(self.module.addon.pipeline.views.wanted(scene), 0) + 1
+            served = [each for each in bpy.data.scenes if self.module.addon.host.roles.source(each) == scene]
+            wanted = 1 + max(self.module.addon.compositor.view_scenes.wanted(scene), 0) + 1
             assert len(served) <= (wanted if scene.afterlight.enabled else 0), [each.name for each in served]
         assert not [scene for scene in bpy.data.scenes if scene.afterlight.role and scene.afterlight.enabled]
 
     @invariant()
     def findings_can_be_asked_for(self):
         for scene in bpy.data.scenes:
-            self.module.addon.pipeline.checks.findings(scene)
+            self.module.addon.diagnosis.checks.findings(scene)

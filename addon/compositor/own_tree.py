@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The compositor tree of a lit scene: the user's own where it is in use, else one that Afterlight makes and takes away
+again.
+
+A tree is ours only if it carries our mark and the scene names it as `afterlight.own_tree`.
+"""
+
+import bpy
+
+from ..host.roles import MARK
+from . import nodes
+
+NAME = "Afterlight Compositing"
+TREE = "tree"
+
+
+def is_ours(scene, tree):
+    """Whether Afterlight made this tree for `scene`."""
+    return tree is not None and tree == scene.afterlight.own_tree and tree.get(MARK) == TREE
+
+
+def is_untouched(scene, tree):
+    """Whether Afterlight made this tree for `scene`, and nobody has built on it: connect() links it anew."""
+    return is_ours(scene, tree) and _holds_only_ours(tree)
+
+
+def adopt(scene):
+    """Mark the tree that 0.1.0 to 0.3.0 made for `scene`."""
+    tree = scene.afterlight.own_tree
+    if (
+        tree is not None
+        and MARK not in tree
+        and tree.name.startswith(NAME)
+        and any(nodes.role(node) == "plain" for node in tree.nodes)
+    ):
+        tree[MARK] = TREE
+
+
+def in_use(scene):
+    """The compositor tree to wire: the user's own where it is in use, else one of ours."""
+    settings, render = scene.afterlight, scene.render
+    tree = scene.compositing_node_group
+    if tree is not None and settings.own_tree not in (None, tree) and tree.get(MARK) == TREE and _holds_only_ours(tree):
+        settings.own_tree = tree  # a copied scene has a copy of the tree we made for its original
+    if tree is not None and (render.use_compositing or is_ours(scene, tree)):
+        render.use_compositing = True
+        if is_untouched(scene, tree):
+            _link_image(tree)
+        return tree
+    if not render.use_compositing:
+        # A tree that is switched off must not come to life because Afterlight needs the compositor.
+        settings.compositing_was_off, settings.set_aside = True, tree
+        render.use_compositing = True
+    own = settings.own_tree
+    is_free = own is not None and not _is_anothers(own, scene)
+    if is_free and is_untouched(scene, own):  # the user has taken it out of use
+        _link_image(own)
+    else:
+        if is_free and is_ours(scene, own):
+            _hand_over(own)
+        own = _new_tree(scene)
+    settings.own_tree = scene.compositing_node_group = own
+    return own
+
+
+def _new_tree(scene):
+    """The tree that does what Blender does without one: the first view layer's image is the picture."""
+    tree = bpy.data.node_groups.new(NAME, "CompositorNodeTree")
+    tree[MARK] = TREE
+    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+    picture, output = nodes.picture_node(tree, scene), tree.nodes.new("NodeGroupOutput")
+    picture[MARK] = output[MARK] = "plain"
+    output.location = (600, 0)
+    _link_image(tree)
+    return tree
+
+
+def _link_image(tree):
+    """In a tree that holds nothing but our nodes, link the image to the output where a deleted node left a gap."""
+    picture = next((node for node in tree.nodes if "Image" in node.outputs and nodes.role(node) == "plain"), None)
+    for output in [node for node in tree.nodes if node.bl_idname == "NodeGroupOutput"]:
+        if picture and not output.inputs[0].is_linked:
+            tree.links.new(picture.outputs["Image"], output.inputs[0])
+
+
+def restore(scene):
+    """Give `scene` its own tree back and remove ours, unless the user has built on it."""
+    settings, own = scene.afterlight, scene.afterlight.own_tree
+    if is_ours(scene, own):
+        shared = any(other != scene and other.compositing_node_group == own for other in bpy.data.scenes)
+        if not shared and is_untouched(scene, own) and not _is_in_a_group(own):
+            if scene.compositing_node_group == own:
+                scene.compositing_node_group = settings.set_aside
+                if settings.compositing_was_off:
+                    scene.render.use_compositing = False
+            bpy.data.node_groups.remove(own)
+        elif not shared:
+            _hand_over(own)
+    settings.own_tree = settings.set_aside = None
+    settings.compositing_was_off = False
+
+
+def remove_orphans():
+    """Remove trees of ours whose scene has been deleted, where nobody has come to use them."""
+    named = {scene.afterlight.own_tree for scene in bpy.data.scenes}
+    for tree in [
+        tree for tree in bpy.data.node_groups if tree.get(MARK) == TREE and tree not in named and tree.library is None
+    ]:
+        if not tree.users and _holds_only_ours(tree):
+            bpy.data.node_groups.remove(tree)
+
+
+def _holds_only_ours(tree):
+    return all(map(nodes.role, tree.nodes))
+
+
+def _hand_over(tree):
+    """The user has built on a tree of ours: from now on it is theirs."""
+    del tree[MARK]
+    for node in tree.nodes:
+        if nodes.role(node) == "plain":
+            del node[MARK]
+
+
+def _is_anothers(tree, scene):
+    """Whether a tree that `scene` names is another scene's: of a copy the original's."""
+    return any(
+        other != scene and tree in (other.compositing_node_group, other.afterlight.own_tree)
+        for other in bpy.data.scenes
+    )
+
+
+def _is_in_a_group(tree):
+    """Whether something else than a scene uses a tree."""
+    return any(user.id_type != "SCENE" for user in bpy.data.user_map(subset={tree})[tree])

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine of the scene that comes before the views: Blender calls it when EEVEE has finished the lit scene, and
+what it does to the cameras of the views holds for the same frame."""
+
+import time
+
+import bpy
+import numpy as np
+
+from .. import gather
+from ..compositor import view_scenes
+from ..diagnosis import checks
+from ..host import main_thread, report, roles
+from ..host.report import Problem
+from ..scene import passes, view_cameras
+from ..translations import say
+from ..views import main_view, placement, ray_cast
+from . import relight
+
+
+class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
+    bl_idname = view_scenes.SCOUT_ENGINE
+    bl_label = "Afterlight's views (used by its helper scenes)"
+    bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
+
+    def render(self, depsgraph):
+        """Pose the views, or leave them out. There is no picture."""
+        scene = roles.source(depsgraph.scene)
+        if scene is None or not view_scenes.is_rendered(scene) or not scene.afterlight.enabled:
+            return
+        start = time.perf_counter()
+        try:
+            with main_thread.until(self.test_break):
+                main_thread.run(lambda: view_scenes.prepare(scene))
+                if relight.is_replayed(scene):
+                    return  # the views that were kept with the frame are used again
+                if any(finding.fatal for finding in checks.findings(scene)):
+                    return  # the engine of the light says so
+                self._place(scene, depsgraph)
+        except gather.Cancelled:
+            pass
+        except Problem as problem:
+            self._warn(scene, say(*problem.args))
+        except Exception as error:  # a bug of ours must not cost the light of the main view
+            report.tell_traceback()
+            self._warn(
+                scene,
+                say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
+            )
+        report.scouted(scene, time.perf_counter() - start)
+
+    def _place(self, scene, depsgraph):
+        start = time.perf_counter()
+        camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+        by_hand = scene.afterlight.views == "MANUAL"
+        if by_hand:
+            main_thread.run(lambda: self._pose_by_hand(scene, depsgraph))
+        geometry = ray_cast.Geometry(depsgraph)
+        seen_by_eevee, rng = main_view.finished(scene, camera), np.random.default_rng(scene.afterlight.seed)
+
+        def look(paths):
+            return seen_by_eevee.paths(paths, geometry, rng, scene.afterlight.bounces)
+
+        light, seen = look(placement.PATHS)
+        if light is None:
+            if not by_hand:
+                self._warn(scene, say("No views were placed: no surface lights what the camera sees"))
+            return
+        if by_hand:
+            shares = self._score(scene, depsgraph, light, seen, geometry.cast)
+        else:
+            shares = self._choose(scene, depsgraph, light, seen, geometry.cast, look, rng)
+        main_thread.run(lambda: view_scenes.leave_out_still(scene, depsgraph))
+        report.covered(scene, shares, time.perf_counter() - start)
+
+    def _pose_by_hand(self, scene, depsgraph):
+        for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
+            if problem := view_scenes.unusable(each.camera):
+                self._warn(scene, problem)
+            else:
+                evaluated = each.camera.evaluated_get(depsgraph)
+                view_cameras.pose(
+                    view, scene, evaluated.matrix_world, view_cameras.lens_of(evaluated, depsgraph, scene)
+                )
+
+    def _score(self, scene, depsgraph, light, seen, cast):
+        """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left
+        out."""
+        shares = [light.arrives(seen)]
+        for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
+            if not view.view_layers[0].use:
+                continue
+            camera = view_cameras.camera(view, depsgraph, scene)
+            frame = passes.window(scene)[0][2:]
+            row, _, depth = passes.project(light.places, frame, camera)
+            eye = camera.position
+            if camera.orthographic:
+                eye = light.places + np.outer(depth, camera.rotation[2])
+            saw = placement.visible(eye, light, cast) & (row >= 0)
+            if not saw.any():
+                self._warn(
+                    scene,
+                    say(
+                        'The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
+                        "a wall, or look away. Move it, or remove it from the list",
+                        each.camera.name,
+                    ),
+                )
+                main_thread.run(lambda view=view: view_scenes.drop(view))
+                continue
+            seen = seen | saw
+            shares.append(light.arrives(seen))
+        return shares
+
+    def _choose(self, scene, depsgraph, light, seen, cast, look, rng):
+        """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
+        half, most, known = view_cameras.HALF_FIELD, scene.afterlight.view_count, view_scenes.placed(scene)
+        old = known.poses if known else []
+        shares = placement.covered(light, seen, cast, half, old)
+        sees_nothing_new = old and shares[-1] <= shares[0]
+        if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL or sees_nothing_new:
+            more, more_seen = look(placement.CHOOSING_PATHS)
+            poses = placement.place(more, more_seen, cast, half, most, rng, old) if more else []
+            shares = placement.covered(light, seen, cast, half, poses)
+            known = placement.Placement(poses, shares, placement.CLEARANCE * light.size)
+            main_thread.run(lambda: view_scenes.keep_placed(scene, known))
+            if not poses and shares[0] < 1 - placement.FALL:
+                self._warn(
+                    scene, say("No views were placed: there is no free place that shows more than the camera does")
+                )
+        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * light.size)
+        lens = view_cameras.wide_lens(scene, known.clearance / 4, far)
+        main_thread.run(
+            lambda: [
+                view_cameras.pose(view, scene, pose, lens) for view, pose in zip(view_scenes.scenes(scene), known.poses)
+            ]
+        )
+        return shares
+
+
+def register():
+    bpy.utils.register_class(AfterlightScout)
+
+
+def unregister():
+    """When the render ends, if one is under way: Blender frees the engines of all renders when any engine's class
+    goes."""
+    main_thread.after_render(lambda: bpy.utils.unregister_class(AfterlightScout))

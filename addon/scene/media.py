@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a scene has anything that light comes through on its way to the camera and that EEVEE's passes of surfaces
+know nothing of: volumes, materials whose Render Method is Blended, and Grease Pencil."""
+
+import bpy
+
+
+def present(scene):
+    """Whether volumes, Blended materials or Grease Pencil can be in the picture of `scene`. What is hidden counts as
+    well: it may be keyframed.
+
+    Objects are looked at only where the file has such a material, and those of instanced collections with them.
+    Materials that Geometry Nodes put on are not traced to their objects: any that uses one is enough."""
+    worlds = {scene.world, *(layer.world_override for layer in scene.view_layers)} - {None}
+    if any(_has_volume(world.node_tree) for world in worlds):
+        return True
+    overrides = {layer.material_override for layer in scene.view_layers} - {None}
+    found = {material for material in bpy.data.materials if _lets_through(material)}
+    if found & overrides:
+        return True
+    if not found and not bpy.data.volumes and not bpy.data.grease_pencils:
+        return False
+    by_nodes = (
+        any(
+            isinstance(user, bpy.types.NodeTree) and user.bl_idname == "GeometryNodeTree"
+            for users in bpy.data.user_map(subset=found).values()
+            for user in users
+        )
+        if found
+        else False
+    )
+    return any(
+        thing.type in {"VOLUME", "GREASEPENCIL"}
+        or any(slot.material in found for slot in thing.material_slots)
+        or any(modifier.type == "NODES" and (by_nodes or _takes(modifier, found)) for modifier in thing.modifiers)
+        for thing in _objects(scene)
+    )
+
+
+def _lets_through(material):
+    return material.surface_render_method == "BLENDED" or _has_volume(material.node_tree)
+
+
+def _has_volume(tree):
+    """Whether anything is linked to the socket Volume of the output that EEVEE uses."""
+    output = tree.get_output_node("EEVEE") if tree else None
+    return output is not None and output.inputs["Volume"].is_linked
+
+
+def _takes(modifier, materials):
+    """Whether a Geometry Nodes modifier has one of the materials among its inputs."""
+    return any(modifier[key] in materials for key in modifier.keys() if isinstance(modifier[key], bpy.types.Material))
+
+
+def _objects(scene):
+    """The objects of a scene and of the collections that it instances, each once."""
+    seen, collections = set(), [scene.collection]
+    while collections:
+        for thing in collections.pop().all_objects:
+            if thing not in seen:
+                seen.add(thing)
+                if thing.instance_type == "COLLECTION" and thing.instance_collection:
+                    collections.append(thing.instance_collection)
+                yield thing

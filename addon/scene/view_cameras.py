@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the camera of a view sees, and how it is set so that Blender renders just that. A view is a scene of
+view_scenes.py."""
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from mathutils import Matrix
+
+from ..compositor import nodes
+from . import passes, pixel_jitter
+
+FIELD = radians(120)  # of an automatic view, across and up: its pixels are no squares, whatever the frame's sides
+HALF_FIELD = np.tan(FIELD / 2) * np.ones(2)  # tangents of half of it
+
+
+@dataclass(frozen=True)
+class Lens:
+    """What a view sees. pixel: (across, up) size of one, at depth 1 (perspective) or in metres (orthographic). centre:
+    (x, y), where the optical axis meets the view, in pixels from the view's middle. near, far: metres."""
+
+    pixel: tuple
+    near: float
+    far: float
+    centre: tuple = (0.0, 0.0)
+    orthographic: bool = False
+
+
+def lens_of(source, depsgraph, scene):
+    """Lens of an evaluated camera of the user's, as if the view were its whole frame, and that as high as it is wide:
+    the side that is shorter sees as far as the other."""
+    size = np.array(passes.window(scene)[0][2:])
+    seen = passes.camera_at(source.matrix_world, source, depsgraph, (0, 0), size, (1.0, 1.0))
+    pixel = (seen.scale * size).max() / size
+    axis = -(seen.offset + seen.scale * size / 2) / pixel
+    return Lens(tuple(pixel), source.data.clip_start, source.data.clip_end, tuple(axis), seen.orthographic)
+
+
+def wide_lens(scene, near, far):
+    """Lens of an automatic view."""
+    return Lens(tuple(2 * HALF_FIELD / np.array(passes.window(scene)[0][2:])), near, far)
+
+
+def pose(view, scene, matrix, lens):
+    """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
+
+    Blender renders it at the scene's resolution and, where that has one, within its render border. The camera is made
+    so that this border holds the whole view."""
+    camera, data = view.camera, view.camera.data
+    place, rotation, _ = Matrix(matrix).decompose()
+    (x, y, width, height), full = passes.window(scene)
+    across, up = lens.pixel
+    # Blender measures a frame in the width of its pixels, and fits its longer side to the sensor.
+    stretch = up / across
+    longer = max(full[0], stretch * full[1])
+    values = {
+        "type": "ORTHO" if lens.orthographic else "PERSP",
+        "sensor_fit": "AUTO",
+        "lens": 500.0,
+        "sensor_width": 500.0 * across * longer,
+        "ortho_scale": across * longer,
+        "shift_x": (full[0] / 2 - x - width / 2 - lens.centre[0]) / longer,
+        "shift_y": stretch * (full[1] / 2 - y - height / 2 - lens.centre[1]) / longer,
+        "clip_start": lens.near,
+        "clip_end": lens.far,
+    }
+    for name, value in values.items():
+        nodes.assign(data, name, value)
+    for name, value in (("rotation_mode", "QUATERNION"), ("location", place), ("rotation_quaternion", rotation)):
+        nodes.assign(camera, name, value)
+    for name, value in (
+        ("pixel_aspect_x", max(1 / stretch, 1.0)),
+        ("pixel_aspect_y", max(stretch, 1.0)),
+        ("use_border", scene.render.use_border),
+        ("use_crop_to_border", scene.render.use_crop_to_border),
+    ):
+        nodes.assign(view.render, name, value)
+    nodes.assign(view.view_layers[0], "use", True)
+
+
+def window_matrix(lens, scene):
+    """(4, 4) float64: the projection of a lens of `scene`."""
+    size, pixel = np.array(passes.window(scene)[0][2:], float), np.array(lens.pixel)
+    low, high = ((side * size / 2 - lens.centre) * pixel for side in (-1, 1))
+    near, far = lens.near, lens.far
+    found = np.zeros((4, 4))
+    found[(0, 1), (0, 1)] = 2 / (high - low)
+    if lens.orthographic:
+        found[:2, 3] = -(high + low) / (high - low)
+        found[2, 2:], found[3, 3] = (-2 / (far - near), -(far + near) / (far - near)), 1
+    else:
+        found[:2, 2] = (high + low) / (high - low)
+        found[2, 2:], found[3, 2] = (-(far + near) / (far - near), -2 * far * near / (far - near)), -1
+    return found
+
+
+def shown(view, scene):
+    """All that decides what a view sees of a still scene."""
+    camera, data = view.camera, view.camera.data
+    return (
+        passes.window(scene),
+        _aspect(view),
+        camera.location[:],
+        camera.rotation_quaternion[:],
+        data.type,
+        *(
+            getattr(data, name)
+            for name in ("sensor_width", "ortho_scale", "shift_x", "shift_y", "clip_start", "clip_end")
+        ),
+    )
+
+
+def camera(view, depsgraph, scene):
+    """gather.Camera of a view that is rendered together with `scene`. Its pose is what pose() set: nothing animates
+    it, so that no depsgraph need have heard of it."""
+    place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
+    (x, y, _, _), full = passes.window(scene)
+    return passes.camera_at(
+        place, view.camera, depsgraph, (x, y), full, _aspect(view), pixel_jitter.middle(view, view.view_layers[0])
+    )
+
+
+def _aspect(view):
+    return view.render.pixel_aspect_x, view.render.pixel_aspect_y

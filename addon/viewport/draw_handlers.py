@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where Blender calls us as it draws its viewports, and how it is asked to draw them again."""
+
+import blf
+import bpy
+from bpy.app.handlers import persistent
+
+from .. import gather
+from ..diagnosis import checks
+from ..host import events, main_thread, report, roles
+from ..translations import say
+from . import blend, scene_changes
+from .region_light import Region, Stage
+from .view_cache import Further
+
+LINE = 11  # points of the text's height
+
+_regions, _further = {}, {}  # by the address of the region, and of its viewport
+_waiting = set()  # addresses of regions that are to be drawn again
+_refused = {}  # why a scene's viewports are not lit, by its session_uid
+_handles = []
+
+
+def problem(scene):
+    """Why the viewports of `scene` are not lit though they should be, as a sentence for people; empty where nothing
+    keeps the light out."""
+    if scene.session_uid in _refused:
+        return _refused[scene.session_uid]
+    if checks.counts_twice(scene):
+        return say("EEVEE's ray tracing already adds bounced light: ours would count it twice")
+    return ""
+
+
+def switched(scene):
+    """The viewports of `scene` are to be lit, or not."""
+    _refused.pop(scene.session_uid, None)
+    redraw()
+
+
+def redraw():
+    """Have all viewports drawn again."""
+    main_thread.later(
+        lambda: [area.tag_redraw() for area in _areas()]
+    )  # a script may set something in the thread of a render
+
+
+def is_lit(scene, space):
+    """Whether a viewport shows the light of `scene`: the whole picture, by EEVEE."""
+    shading = space.shading
+    return (
+        scene.afterlight.enabled
+        and scene.afterlight.use_viewport
+        and scene.render.engine == "BLENDER_EEVEE"
+        and shading.type == "RENDERED"
+        and shading.render_pass == "COMBINED"
+        and not roles.is_helper(scene)
+        and not problem(scene)
+    )
+
+
+def _before():
+    context = bpy.context
+    if context.space_data and is_lit(context.scene, context.space_data):
+        blend.remember()
+
+
+def _after():
+    """A viewport has been drawn."""
+    context = bpy.context
+    scene, space, region = context.scene, context.space_data, context.region
+    address = region.as_pointer()
+    if not is_lit(scene, space):
+        _let_go(address)
+        return
+    try:
+        _light(
+            Stage(scene, context.view_layer, space, region, context.region_data, context.evaluated_depsgraph_get()),
+            address,
+        )
+    except gather.GpuUnavailable as error:
+        _refuse(scene, say(*error.args))
+    except Exception as error:  # a bug of ours must not cost the viewport
+        report.tell_traceback()
+        _refuse(
+            scene,
+            say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
+        )
+    finally:
+        blend.forget()
+
+
+def _light(stage, address):
+    if address not in _regions:
+        _prune()
+        _regions[address] = Region(_further.setdefault(stage.space.as_pointer(), Further()))
+    region = _regions[address]
+    if not bpy.app.is_job_running("RENDER"):  # which needs the GPU, and sets what a viewport is not to see
+        left = region.work(stage)
+        if left is not None:
+            _again(address, left)
+        gather.device.settle()  # other windows have GPU contexts of their own
+    region.show(stage)
+    if stage.space.overlay.show_overlays and stage.space.overlay.show_text:
+        _write(stage.region, say("Indirect Light {} / {}", *region.progress()))
+
+
+def _write(region, text):
+    scale = bpy.context.preferences.system.ui_scale
+    blf.size(0, LINE * scale)
+    blf.color(0, 1.0, 1.0, 1.0, 0.8)
+    blf.enable(0, blf.SHADOW)
+    blf.shadow(0, 3, 0.0, 0.0, 0.0, 0.6)
+    blf.position(0, region.width / 2 - blf.dimensions(0, text)[0] / 2, LINE * scale, 0)
+    blf.draw(0, text)
+    blf.disable(0, blf.SHADOW)
+
+
+def _refuse(scene, text):
+    """Light no viewport of `scene` any more, and say why, until the box is ticked again."""
+    _refused[scene.session_uid] = text
+    free()
+    report.pop_up(text, say("Afterlight: the viewport has no indirect light"))
+    bpy.app.timers.register(redraw, first_interval=0.0)
+
+
+def _again(address, seconds):
+    """Have a region drawn again: while it is drawn Blender does not listen to that."""
+    if not _waiting:
+        bpy.app.timers.register(_tag, first_interval=seconds)
+    _waiting.add(address)
+
+
+def _tag():
+    for area in _areas():
+        for region in area.regions:
+            if region.as_pointer() in _waiting:
+                region.tag_redraw()
+    _waiting.clear()
+    _prune()
+
+
+def _areas():
+    return [
+        area for window in bpy.context.window_manager.windows for area in window.screen.areas if area.type == "VIEW_3D"
+    ]
+
+
+def _prune():
+    """Let go of regions and viewports that are no longer shown."""
+    shown = {region.as_pointer() for area in _areas() for region in area.regions}
+    for address in _regions.keys() - shown:
+        _let_go(address)
+
+
+def _let_go(address):
+    region = _regions.pop(address, None)
+    if region is not None:
+        region.free()
+    used = {id(each.further) for each in _regions.values()}
+    for space in [space for space, further in _further.items() if id(further) not in used]:
+        _further.pop(space).free()
+
+
+@persistent
+def free(*_):
+    """Give all back that viewports have on the GPU."""
+    for address in list(_regions):
+        _let_go(address)
+    _waiting.clear()
+
+
+@persistent
+def forget(*_):
+    """Another file is loaded."""
+    free()
+    _refused.clear()
+
+
+HANDLERS = (("load_pre", forget),)
+
+
+def register():
+    scene_changes.register()
+    events.listen(HANDLERS)
+    if not bpy.app.background:
+        for call, moment in ((_before, "PRE_VIEW"), (_after, "POST_PIXEL")):
+            _handles.append(bpy.types.SpaceView3D.draw_handler_add(call, (), "WINDOW", moment))
+
+
+def unregister():
+    while _handles:
+        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+    events.ignore(HANDLERS)
+    scene_changes.unregister()
+    forget()
+    blend.release()

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What has changed in a scene since its viewports were lit: told by Blender's dependency graph, in two kinds. Where
+lamps alone have, the surfaces are where they were."""
+
+from dataclasses import dataclass, replace
+
+from bpy.app.handlers import persistent
+
+from ..host import events
+
+LAMPS = {"LIGHT", "WORLD"}
+
+
+@dataclass(frozen=True)
+class Stamps:
+    """How often something of a kind has changed."""
+
+    lamps: int = 0
+    shapes: int = 0
+
+
+_stamps = {}  # by the scene's session_uid
+_outlines = {}  # what _outline() gave last
+
+
+def stamps(scene):
+    """Stamps of a scene."""
+    return _stamps.setdefault(scene.session_uid, Stamps())
+
+
+@persistent
+def follow_edits(scene, depsgraph):
+    """Blender has evaluated what was edited."""
+    if depsgraph.mode == "RENDER" or not (scene.afterlight.enabled and scene.afterlight.use_viewport):
+        return
+    changed = [
+        update.id.original
+        for update in depsgraph.updates
+        if update.id.id_type != "SCENE"  # which is said of any setting
+        and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)
+    ]
+    outline = _outline(scene, depsgraph)
+    lamps = [each for each in changed if _is_lamp(each)]
+    trees = [each.node_tree for each in lamps if each.id_type in LAMPS]
+    if any(each not in lamps and each not in trees for each in changed) or _outlines.get(scene.session_uid) not in (
+        None,
+        outline,
+    ):
+        _change(scene, "shapes")
+    elif changed:
+        _change(scene, "lamps")
+    _outlines[scene.session_uid] = outline
+
+
+@persistent
+def follow_frames(scene, *_):
+    """Another frame is shown."""
+    _change(scene, "shapes")
+
+
+@persistent
+def forget(*_):
+    _stamps.clear()
+    _outlines.clear()
+
+
+def _change(scene, kind):
+    known = stamps(scene)
+    _stamps[scene.session_uid] = replace(known, **{kind: getattr(known, kind) + 1})
+
+
+def _is_lamp(thing):
+    return thing.id_type in LAMPS or (thing.id_type == "OBJECT" and thing.type == "LIGHT")
+
+
+def _outline(scene, depsgraph):
+    """Of what changes without being called geometry, transform or shading: which objects are there, and EEVEE's
+    settings."""
+    eevee, layer = scene.eevee, depsgraph.view_layer
+    return (
+        hash(tuple(each.session_uid for each in layer.objects if each.visible_get(view_layer=layer))),
+        scene.world and scene.world.session_uid,
+        *(
+            getattr(eevee, each.identifier)
+            for each in eevee.bl_rna.properties
+            if each.type in {"BOOLEAN", "INT", "FLOAT", "ENUM"} and not getattr(each, "is_array", False)
+        ),
+    )
+
+
+HANDLERS = (("depsgraph_update_post", follow_edits), ("frame_change_post", follow_frames), ("load_post", forget))
+
+
+def register():
+    events.listen(HANDLERS)
+
+
+def unregister():
+    events.ignore(HANDLERS)
+    forget()

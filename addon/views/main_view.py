@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The main view as EEVEE has it: which of its points get light, and what it knows of the surfaces that send some."""
+
+import numpy as np
+
+from .. import gather
+from ..render import relight
+from ..scene import animation, materials, passes
+from . import placement, ray_cast
+
+
+def finished(scene, camera):
+    """The Picture that EEVEE has just finished of the first view layer that is rendered."""
+    layer = passes.first_layer(scene)
+    relight.forget(scene.session_uid, but=animation.files())  # its own file is written again
+    frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
+    return Picture(scene, layer, frame, camera)
+
+
+class Picture:
+    """frame: gather.Passes of a view layer of `scene`, seen by gather.Camera."""
+
+    def __init__(self, scene, layer, frame, camera):
+        self._frame, self._camera, self._sky = frame, camera, materials.sky(layer.world_override or scene.world)
+        self._covered = self._sky if scene.afterlight.use_world_shadow else 0.0
+
+    def receivers(self, count, rng):
+        """(places, normals, albedo) of `count` pixels spread over the picture."""
+        frame = self._frame
+        flat = placement.pixels((frame.depth > 0) & (frame.depth < gather.FARTHEST), count, rng)
+        row, column = np.divmod(flat, frame.size[0])
+        places = passes.positions(frame, self._camera, flat)
+        normals = np.stack([axis[row, column] for axis in frame.normal], -1).astype(float)
+        albedo = np.mean([axis[row, column] for axis in frame.diffuse_color], 0)
+        # Off the surface by more than the depth's own precision.
+        off = 1e-3 * np.abs(frame.depth[row, column])[:, None]
+        return np.nan_to_num(places + off * normals), np.nan_to_num(normals), np.nan_to_num(albedo)
+
+    def sees(self, places, normals):
+        """(bool (N,), rows, columns): which of these points of surfaces the picture shows, and where."""
+        row, column, depth = passes.project(places, self._frame.size, self._camera)
+        shown = self._frame.depth[row, column]
+        toward = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - places
+        return (row >= 0) & (depth < 1.01 * shown) & (np.sum(toward * normals, -1) > 0), row, column
+
+    def paths(self, count, geometry, rng, bounces):
+        """(placement.Bounces of so many paths, or None, which of their points the picture shows)."""
+        found = placement.bounces(
+            *self.receivers(count, rng), geometry.cast, self.radiance_by(geometry, rng), rng, bounces
+        )
+        return found, found and self.sees(found.places, found.normals)[0]
+
+    def radiance_by(self, geometry, rng):
+        """What placement.bounces() asks: from the picture where it shows the point, else by the lamps and materials."""
+
+        def radiance(places, normals, things):
+            albedo, emission = geometry.look(things)
+            seen, row, column = self.sees(places, normals)
+            direct = np.full(len(places), self._sky)
+            direct[~seen] += ray_cast.direct_light(geometry, places[~seen], normals[~seen], rng)
+            for guess, known in (
+                (direct, self._frame.diffuse_direct),
+                (albedo, self._frame.diffuse_color),
+                (emission, self._frame.emission),
+            ):
+                shown = np.nan_to_num(np.mean([axis[row, column] for axis in known], 0), posinf=0.0)
+                guess[seen] = np.clip(shown[seen], 0, None)
+            # What stands before the world takes its light away, and must be seen as much as what sends some.
+            return direct, albedo, emission + self._covered
+
+        return radiance

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How fast the light itself is on this machine's GPU, without Blender: passes, the paper's table, ceilings and growth.
+
+    .venv/bin/python -m benchmarks.gpu [--quick] [--out docs/measured/speed.md]
+
+Any Python with numpy, moderngl and matplotlib will do. Writes docs/measured/speed/<renderer>.json, then
+docs/measured/speed.md and its plots from all such files there. Exit code 1 where the frame takes longer than AIM times
+its floor."""
+
+import argparse
+import json
+import os
+import re
+import shlex
+import sys
+import time
+from functools import lru_cache
+from pathlib import Path
+from statistics import median
+
+from .. import ROOT
+from ..cost import cost_report
+from . import ceilings, fetchless, gpu_report, opengl, room
+
+SIZE = 1280, 720
+RADIUS = 16
+PAPER = (4, 64), (4, 256), (2, 256), (2, 64)  # start and samples, in the order of the paper's table
+LIGHT, HEAVY = (4, 64), (2, 256)  # those that growth is measured at
+SIZES = (640, 360), (960, 540), (1280, 720), (1920, 1080), (2560, 1440), (3840, 2160)
+SAMPLES = 16, 32, 64, 128, 256, 512, 1024
+SAMPLES_RADIUS = 32  # its regions hold more than 1024 texels
+RADII = 4, 8, 16, 32, 64
+REPEATS = 9  # after one frame to warm up
+FEWEST = 3  # of slow frames
+PATIENCE = 20.0  # seconds: a case that needs more for FEWEST frames is left out
+
+
+def measure(light, quick=False):
+    """All numbers of one machine, as they go into its JSON file. Seconds; lists hold one number a frame."""
+    sizes, counts, radii = (SIZES[:3], SAMPLES[:4], RADII[:3]) if quick else (SIZES, SAMPLES, RADII)
+    patience = PATIENCE / 4 if quick else PATIENCE
+    frame = lru_cache(maxsize=1)(lambda size: room.frame(light, *size))
+
+    def cases(series):
+        """The runs of a series, cheapest first, as far as patience goes."""
+        runs, slow = [], 0.0
+        for size, start, samples, radius, cost in series:
+            if runs and slow * cost > patience / FEWEST:
+                say(f"left out: {_name(size, start, samples, radius)} would take {slow * cost:.0f} s a frame")
+                break
+            runs.append(run(light, *frame(size), settings(light, start, samples, radius), patience))
+            slow = median(runs[-1]["gpu"]) / cost
+        return runs
+
+    paper = [run(light, *frame(SIZE), settings(light, start, samples), patience, wall=True) for start, samples in PAPER]
+    chosen = settings(light, *LIGHT)
+    say("ceilings")
+    rates = ceilings.measure(light, *frame(SIZE), chosen)
+    floor = [
+        {
+            "stage": work.stage,
+            "read": work.read,
+            "written": work.written,
+            "fetches": work.fetches,
+            "samples": work.samples,
+            "seconds": work.floor(rates)[0],
+            "limit": work.floor(rates)[1],
+        }
+        for work in ceilings.work(light.pyramid, *SIZE, chosen)
+    ]
+    growth = {
+        "samples": cases((SIZE, LIGHT[0], count, SAMPLES_RADIUS, count) for count in counts),
+        "radius": cases((SIZE, *LIGHT, radius, 1) for radius in radii),
+    }
+    for name, setting in (("pixels_light", LIGHT), ("pixels_heavy", HEAVY)):
+        growth[name] = cases((size, *setting, RADIUS, size[0] * size[1]) for size in sizes)
+    return {
+        "machine": machine(),
+        "quick": quick,
+        "gather_passes": fetchless.gather_passes(light),
+        "paper": paper,
+        "rates": rates,
+        "floor": floor,
+        "growth": growth,
+    }
+
+
+def run(light, passes, camera, settings, patience=PATIENCE, wall=False):
+    """Frames of one size and setting: the GPU's seconds by pass and in all, and, where asked for, those on the clock
+    for the whole of gather_indirect() from arrays to an array, in frames of their own without timers."""
+    sizes = light.pyramid.level_sizes(*(-(-extent // settings.start) for extent in passes.size), settings.radius)
+    found = {
+        "size": passes.size,
+        "start": settings.start,
+        "samples": settings.samples,
+        "radius": settings.radius,
+        "levels": len(sizes),
+        "gpu": [],
+        "wall": [],
+        "passes": {},
+    }
+    say(_name(passes.size, settings.start, settings.samples, settings.radius))
+    first = time.perf_counter()
+    light.gather_indirect(passes, camera, settings)
+    repeats = REPEATS
+    while len(found["gpu"]) < repeats:
+        with opengl.timed(light) as dispatches:
+            light.gather_indirect(passes, camera, settings)
+        found["gpu"].append(sum(map(sum, dispatches.values())))
+        for name, seconds in dispatches.items():
+            entry = found["passes"].setdefault(name, {"dispatches": len(seconds), "seconds": []})
+            entry["seconds"].append(sum(seconds))
+        if wall:
+            start = time.perf_counter()
+            light.gather_indirect(passes, camera, settings)
+            found["wall"].append(time.perf_counter() - start)
+        elif time.perf_counter() - first > patience:
+            repeats = FEWEST
+    return found
+
+
+def settings(light, start, samples, radius=RADIUS):
+    return light.Settings(start=start, samples=samples, radius=radius, seed=0, strength=1.0)
+
+
+def machine():
+    """What the numbers were measured on."""
+    info = opengl.context().info
+    return {
+        "renderer": info["GL_RENDERER"],
+        "vendor": info["GL_VENDOR"],
+        "version": info["GL_VERSION"],
+        "processor": cost_report.processor(),
+        "cores": os.cpu_count(),
+        "timer": "timer queries" if opengl.queries_cover_compute() else "the clock around each dispatch",
+    }
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def _name(size, start, samples, radius):
+    return f"{size[0]}x{size[1]}, start {start}, {samples} samples, radius {radius}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Afterlight's speed on this machine's GPU, without Blender.")
+    parser.add_argument("--quick", action="store_true", help="fewer and smaller frames, in a minute")
+    parser.add_argument(
+        "--out", type=Path, default=ROOT / "docs" / "measured" / "speed.md", help="the page; docs/measured/speed.md"
+    )
+    options = parser.parse_args()
+    found = measure(opengl.start(), options.quick)
+    found["command"] = shlex.join(["python", "-m", "benchmarks.gpu", *sys.argv[1:]])
+    folder = gpu_report.folder_of(options.out)
+    folder.mkdir(parents=True, exist_ok=True)
+    name = re.sub(r"[^a-z0-9]+", "-", found["machine"]["renderer"].lower()).strip("-")
+    (folder / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n")
+    gpu_report.write(options.out)
+    text, kept = gpu_report.verdict(found)
+    print(text)
+    return int(not kept)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

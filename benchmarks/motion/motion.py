@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How true and how calm bounced light is in moving shots: error, flicker, lag and trails beside EEVEE's and against
+Cycles.
+
+    .venv/bin/python -m benchmarks.motion [SHOT or FILE.blend ...] [--ways eevee,production,production+history]
+    [--frames 1-24]
+        [--page FILE.md] [--sheet FILE.png] [--sheet-frame 13] [--farm]
+
+Each way renders all frames in one job, `bpy.ops.render.render(animation=True)`, to files, as a user does: what
+Afterlight keeps from frame to frame lives no longer. The truth is Cycles with four diffuse bounces, frame by frame, in
+two independent halves, kept in build/references. EEVEE's direct light is the same to the last bit in all of
+Afterlight's ways and in plain EEVEE, so shadows that move take no part: what differs is the bounce. Exit code 1 where
+a way could not be rendered."""
+
+import argparse
+import shlex
+import sys
+import tempfile
+import time
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import session
+from clip import frame_range
+from make_samples import MOVING as SHOTS
+
+from .. import ROOT
+from ..accuracy import accuracy, candidates, references
+from . import motion_measures, motion_report
+
+FOLDER = ROOT / "sample_blends" / "moving"
+ALONE = "eevee", "tracing", "tracing-best"  # ways of EEVEE's
+WAYS = *ALONE, "production", "production+history"
+BOUNCES = 4
+
+
+@dataclass
+class Way:
+    """One way to render a shot. mode(scene): a context. traced: its bounce lies in Diffuse Direct, where EEVEE puts
+    its own; otherwise in the picture. without: the name of the same way without history."""
+
+    name: str
+    mode: callable
+    traced: bool = False
+    without: str = ""
+
+
+def ways_of(names, afterlight, accumulate=None):
+    """[Way] by the names that --ways takes."""
+    known = {
+        "eevee": Way("EEVEE", lambda scene: nullcontext()),
+        "tracing": Way("EEVEE ray tracing, default", lambda scene: candidates.traced(scene, {}), True),
+        "tracing-best": Way("EEVEE ray tracing, best", lambda scene: candidates.traced(scene, candidates.BEST), True),
+    }
+    return [known.get(name) or lit(afterlight, name, accumulate) for name in names]
+
+
+def lit(afterlight, name, accumulate=None):
+    """Afterlight by PRESET or PRESET+history. Both draw anew in every frame, so that what flickers is noise."""
+    preset, _, history = name.partition("+")
+    title = f"Afterlight, {preset.title()}"
+    ticked = candidates.ticked(afterlight, preset)
+
+    @contextmanager
+    def mode(scene):
+        with ticked.mode(scene):
+            settings = scene.afterlight
+            settings.use_animated_seed = True
+            if hasattr(settings, "use_history"):
+                settings.use_history = bool(history)
+            elif history:
+                raise candidates.Unmeasurable(
+                    "this version of Afterlight has no scene.afterlight.use_history to switch on"
+                )
+            if accumulate is not None:
+                settings.accumulate = accumulate
+            yield
+
+    return Way(f"{title} with history" if history else title, mode, without=title if history else "")
+
+
+def opened(path, options, afterlight):
+    """The shot's scene as EEVEE alone renders it, the frames of `options` its range."""
+    scene = candidates.open_scene(path, options.size, options.samples, afterlight)
+    if options.frames:
+        scene.frame_start, scene.frame_end = options.frames
+    if scene.frame_end <= scene.frame_start:
+        raise candidates.Unmeasurable("it has but one frame")
+    return scene
+
+
+def job(scene, layers=False):
+    """(seconds, [{channel or pass: array} of each frame]): the scene's frames, rendered in one go. layers: all passes
+    and not the composited picture, which is "RGBA"."""
+    import bpy
+
+    image = scene.render.image_settings
+    if layers:
+        image.media_type = "MULTI_LAYER_IMAGE"
+    else:
+        image.media_type, image.file_format = "IMAGE", "OPEN_EXR"
+    image.color_depth, image.exr_codec = "32", "ZIP"
+    with tempfile.TemporaryDirectory(prefix="afterlight-motion-") as folder:
+        scene.render.filepath = str(Path(folder) / "frame_####.exr")
+        scene.frame_set(scene.frame_end)  # an animation that begins at the current frame passes for F12 in its first
+        start = time.perf_counter()
+        bpy.ops.render.render(animation=True, scene=scene.name)
+        seconds = time.perf_counter() - start
+        if scene.afterlight.enabled and scene.afterlight.report:
+            raise candidates.Unmeasurable(scene.afterlight.report)
+        return seconds, [read(path) for path in sorted(Path(folder).iterdir())]
+
+
+def read(path):
+    """{pass without its layer's name: (H, W, 1 to 4) float32} of an EXR file, or {"Combined": ...} of a picture."""
+    import OpenEXR
+
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    found = {}
+    for axes in ("RGB", "XYZW", "XYZ", "Z"):
+        for name in {name.rpartition(".")[0] for name in channels}:
+            parts = [f"{name}.{axis}" if name else axis for axis in axes]
+            if all(part in channels for part in parts):
+                found.setdefault(
+                    name.rpartition(".")[2] or "Combined", np.stack([channels[part] for part in parts], -1)
+                )
+    return found
+
+
+def surface(frame):
+    """motion_measures.Surface of a frame with all passes."""
+    return motion_measures.Surface(frame["Vector"], frame["Depth"][..., 0], frame["Diffuse Color"], frame["Normal"])
+
+
+def diffuse(frame):
+    return frame["Diffuse Direct"] * frame["Diffuse Color"]
+
+
+def truth(scene, path, samples):
+    """(2, frames, H, W, 3) float32: the indirect light by Cycles in two halves, `samples` or more each."""
+    source, found = references.source_key(path), []
+    for frame in range(scene.frame_start, scene.frame_end + 1):
+        scene.frame_set(frame)
+        one = references.Truth(scene, BOUNCES, source)
+        one.extend(BOUNCES, samples)
+        found.append([one.indirect(BOUNCES, half) for half in range(2)])
+        print(f"  Cycles, frame {frame}", file=sys.stderr, flush=True)
+    return np.array(found, np.float32).swapaxes(0, 1)
+
+
+def measure(path, options, afterlight):
+    """motion_report.Shot. Raises candidates.Unmeasurable where nothing can be measured."""
+    scene = opened(path, options, afterlight)
+    if references.world_shines(scene):
+        raise candidates.Unmeasurable("its world shines, which EEVEE counts as direct light")
+    scene.view_layers[0].use_pass_vector = True
+    seconds, plain = job(scene, layers=True)
+    scene.view_layers[0].use_pass_vector = False
+    halves = truth(scene, path, options.truth_samples)
+    surfaces = [surface(frame) for frame in plain]
+    shot = motion_report.Shot(
+        path.stem,
+        scene.frame_start,
+        (halves[0] + halves[1]) / 2,
+        (halves[0] - halves[1]) / 2,
+        [motion_measures.track(*pair) for pair in zip(surfaces, surfaces[1:])],
+    )
+    for way in ways_of(options.ways, afterlight, options.accumulate):
+        print(f"  {way.name}", file=sys.stderr, flush=True)
+        try:
+            light, spent = rendered(path, way, plain, seconds, options, afterlight)
+        except candidates.Unmeasurable as reason:
+            shot.failures[way.name] = str(reason)
+            continue
+        shot.add(way.name, light, spent, way.without)
+    return shot
+
+
+def rendered(path, way, plain, seconds, options, afterlight):
+    """((frames, H, W, 3) indirect light, seconds of the job) of a way, in a file opened afresh."""
+    if way.name == "EEVEE":
+        return np.zeros((len(plain), *plain[0]["Combined"].shape), np.float32), seconds
+    scene = opened(path, options, afterlight)
+    with way.mode(scene):
+        spent, frames = job(scene, layers=way.traced)
+    look = diffuse if way.traced else lambda frame: frame["Combined"]
+    return np.array([look(frame) - look(without) for frame, without in zip(frames, plain, strict=True)]), spent
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(
+        prog="benchmarks.motion", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("shots", nargs="*", metavar="SHOT", help=f"of {', '.join(SHOTS)}, or files; those four without")
+    parser.add_argument("--ways", default=",".join(WAYS), help=f"{','.join(WAYS)}; any PRESET or PRESET+history")
+    parser.add_argument("--frames", type=frame_range, metavar="FIRST-LAST", help="the scene's without")
+    parser.add_argument("--size", type=accuracy.picture_size, default=(160, 90), metavar="WxH", help="160x90")
+    parser.add_argument("--samples", type=int, default=16, help="EEVEE's; 16")
+    parser.add_argument("--truth-samples", type=int, default=128, help="of each of Cycles' halves; 128")
+    parser.add_argument("--accumulate", type=int, help="scene.afterlight.accumulate; its default without")
+    parser.add_argument("--page", type=Path, help="the table in Markdown")
+    parser.add_argument(
+        "--sheet", type=Path, help="contact sheet, PNG; with several shots their names are put before it"
+    )
+    parser.add_argument(
+        "--sheet-frame", type=int, help="the frame that it shows; without, the middle one, or the one after a switch"
+    )
+    parser.add_argument("--farm", action="store_true", help="the second half of a shot as a job of its own, instead")
+    options = parser.parse_args(arguments)
+    options.command = shlex.join([".venv/bin/python", "-m", "benchmarks.motion", *arguments])
+    options.paths = [
+        (FOLDER / f"{name}.blend" if name in SHOTS else Path(name)).resolve() for name in options.shots or SHOTS
+    ]
+    options.ways = options.ways.split(",")
+    presets = {path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py")}
+    known = {*WAYS, *presets, *(f"{name}+history" for name in presets)}
+    if unknown := [name for name in options.ways if name not in known]:
+        parser.error(f"there is no way {unknown[0]}; there are {', '.join(sorted(known))}")
+    return options
+
+
+def main(arguments):
+    options = parse(arguments)
+    afterlight = session.enable_afterlight()
+    report, of = motion_report, measure
+    if options.farm:
+        from . import motion_farm as report  # here: it takes the ways from this module
+
+        of = report.measure
+    rows, failed = [], False
+    for path in options.paths:
+        print(f"{path.name}:", file=sys.stderr, flush=True)
+        try:
+            found = of(path, options, afterlight)
+        except candidates.Unmeasurable as reason:
+            print(f"{path.name} cannot be measured: {reason}", file=sys.stderr)
+            failed = True
+            continue
+        failed |= bool(found.failures)
+        rows += found.rows()
+        text = report.page(options, rows)
+        print(text, flush=True)
+        if options.page:  # after each shot: an hour's work must not hang on the last
+            options.page.write_text(text)
+        if options.sheet and not options.farm:
+            several = len(options.paths) > 1
+            found.sheet(
+                options.sheet.with_stem(f"{path.stem}_{options.sheet.stem}") if several else options.sheet,
+                options.sheet_frame,
+            )
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
