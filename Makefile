@@ -10,6 +10,11 @@ setup:           ## .venv with Blender's module, tests' packages and what they n
 test: setup      ## every test, under 15 minutes on two cores; make test PYTEST='tests/test_package.py -k zip' for some
 	$(python) -m pytest $(PYTEST)
 
+lint: setup      ## ruff and mypy over the whole repository, as CI runs them
+	$(python) -m ruff check .
+	$(python) -m ruff format --check .
+	$(python) -m mypy
+
 desktop-test: package ## Afterlight in a full Blender's window, as a person works it; needs Linux and root, 2 GB the first time
 	@tools/desktop.sh $(python) -m pytest --confcutdir=tests/desktop $(or $(PYTEST),tests/desktop)
 
@@ -44,7 +49,7 @@ fuzz: setup      ## what people do to files in any order, and files that claim a
 	cd tests && PYTHONPATH=.:../tools ../$(python) -m fuzz hour $(FUZZ)
 
 clean:           ## remove what was made, but for .venv and the downloaded wheels
-	rm -rf dist build .pytest_cache .hypothesis
+	rm -rf dist build .pytest_cache .hypothesis .ruff_cache .mypy_cache
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test desktop-test package demo clip samples bench speed accuracy motion soak fuzz clean
+.PHONY: help setup test lint desktop-test package demo clip samples bench speed accuracy motion soak fuzz clean
