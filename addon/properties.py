@@ -130,7 +130,7 @@ PARAMETERS = (
         "Emitters that a texel looks at, each chosen among sixteen. Time grows in proportion, noise falls with "
         "the square "
         "root",
-        {"default": 16, "min": 1, "max": gather.MOST_GROUPS, "soft_min": 4},
+        {"default": 16, "min": 1, "max": gather.MAX_GROUPS, "soft_min": 4},
     ),
     Parameter(
         "bounces",
@@ -253,7 +253,7 @@ PARAMETERS = (
 
 
 def light_settings(settings, frame, goes_on=False):
-    """The user's settings as the algorithm takes them: gather.Settings of the method Paper, gather.Draws of Radiosity.
+    """The user's settings as the algorithm takes them: gather.PaperSettings of the method Paper, gather.RadiositySettings of Radiosity.
     `frame` is the frame number, for an animated seed, as frames need whose average goes on from one to the next."""
     common = {
         "start": START.get(settings.start, START["HALF"]),  # a newer version's file may hold others
@@ -261,8 +261,8 @@ def light_settings(settings, frame, goes_on=False):
         "seed": settings.seed + frame * 7919 if settings.use_animated_seed or goes_on else settings.seed,
     }
     if settings.method == "PAPER":
-        return gather.Settings(samples=settings.samples, radius=settings.radius, **common)
-    return gather.Draws(
+        return gather.PaperSettings(samples=settings.samples, radius=settings.radius, **common)
+    return gather.RadiositySettings(
         groups=settings.draws,
         bounces=settings.bounces,
         visibility=settings.use_visibility,

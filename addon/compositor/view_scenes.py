@@ -27,7 +27,7 @@ from . import nodes
 
 SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
 SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
-MOST = 9
+MOST = gather.MAX_VIEWS - 1  # further ones, beside the main view
 FARTHEST = 1e9  # metres from the world's origin that a pose may be
 PLACED = "placed"  # custom property of the scout's scene
 SAMPLES = 1  # EEVEE's; the pixels are averaged down afterwards

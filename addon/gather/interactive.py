@@ -1,110 +1,122 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light of pictures that EEVEE has drawn on the GPU, for a picture that stays there: what a viewport needs.
+"""The indirect light of pictures that EEVEE has drawn on the GPU, for a picture that stays there: for the viewport.
 
-split       EEVEE's pictures become the channels that all passes read
-indirect    one gather, by the same stages as a finished frame's (paper.py, radiosity.py)
-Mean        of the gathers so far, which is what is shown
+split          EEVEE's pictures become the channels that all passes read
+depth_range    of a picture, for the clipping planes of orthographic cameras
+indirect       one gather, by the stages of a finished frame (paper.py, radiosity.py)
+Mean           of the gathers so far, which the viewport shows
 """
 
 import numpy as np
 
 from . import device
-from .paper import Texture, composite, gather, merge, pack, upload, upsample
-from .radiosity import SMOOTH_STEPS, UNSMOOTHED, layout, look, smooth, view_table
-from .radiosity import gather as gather_all
+from .device import Texture
+from .paper import gather, merge, upsample
+from .radiosity import build_records, smooth
+from .radiosity import gather as gather_bounces
+from .shader_interface import COLOR_CHANNELS, DEPTH_RANGE_BLOCK, LIGHT_CHANNELS, SURFACE_CHANNELS
+from .stages import composite, pack, upload
 from .temporal import History
-from .types import Camera, Drawn, Draws, Passes, Settings, View
+from .types import Camera, GpuPasses, PaperSettings, Passes, RadiositySettings, View
+from .view_layout import layout
 
-SPAN_BLOCK = 16  # pixels along the side of what one thread of "span" looks at
-# What each picture is split into: names as the shaders have them, and components; -1 is the depth of a place.
+# The channels of each picture: names in the shaders, and components; -1 is the depth of a position.
 CHANNELS = {
-    "place": (("depth_pass", -1),),
-    "normal": tuple(zip(device.SURFACE_CHANNELS[1:], range(3))),
-    "diffuse_color": tuple(zip(device.COLOR_CHANNELS, range(3))),
-    "diffuse_direct": tuple(zip(device.LIGHT_CHANNELS[:3], range(3))),
-    "emission": tuple(zip(device.LIGHT_CHANNELS[3:], range(3))),
+    "position": (("depth_pass", -1),),
+    "normal": tuple(zip(SURFACE_CHANNELS[1:], range(3), strict=True)),
+    "diffuse_color": tuple(zip(COLOR_CHANNELS, range(3), strict=True)),
+    "diffuse_direct": tuple(zip(LIGHT_CHANNELS[:3], range(3), strict=True)),
+    "emission": tuple(zip(LIGHT_CHANNELS[3:], range(3), strict=True)),
 }
 
 
-def split(name: str, picture: Texture, camera: Camera | None, drawn: Drawn) -> None:
-    """Put a picture, by its name in CHANNELS, into `drawn`, in place of what it was. picture: (height, width), bottom
-    row first; "place" holds places in the world, and (0, 0, 0) where there is none, and needs the camera."""
+def split(name: str, picture: Texture, camera: Camera | None, drawn: GpuPasses) -> None:
+    """Put a picture, by its name in CHANNELS, into `drawn`, and replace the one before. picture: (height, width), bottom
+    row first; "position" holds world positions, and (0, 0, 0) where there is no surface, and needs the camera."""
     width, height = drawn.size
-    block = device.parameters(frame=(width, height)) if camera is None else _axis_block(camera, (width, height))
     quads = -(-width // 4)
     for channel, component in CHANNELS[name]:
         target = drawn.textures[channel] = device.texture(quads, height)
-        block["span"][0] = component
         device.dispatch(
-            "split_picture", block, {"picture": picture, "channel_out": target}, device.groups(quads, height)
+            "split_picture",
+            {"picture": picture, "channel_out": target},
+            device.groups(quads, height),
+            size=drawn.size,
+            component=component,
+            depth_axis=np.zeros(4) if camera is None else _depth_axis(camera),
         )
 
 
-def read(drawn: Drawn) -> Passes:
-    """Passes of what was drawn, out of the GPU."""
+def read(drawn: GpuPasses) -> Passes:
+    """The passes, read back from the GPU."""
     width, height = drawn.size
-    found = {
-        name: tuple(device.read(drawn.textures[channel]).reshape(height, -1)[:, :width] for channel, _ in channels)
-        for name, channels in CHANNELS.items()
-    }
-    (depth,) = found.pop("place")
-    return Passes(depth=depth, **found)
+
+    def channels(name: str) -> list[np.ndarray]:
+        return [device.read(drawn.textures[channel]).reshape(height, -1)[:, :width] for channel, _ in CHANNELS[name]]
+
+    def triple(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        x, y, z = channels(name)
+        return x, y, z
+
+    return Passes(
+        channels("position")[0],
+        triple("normal"),
+        triple("diffuse_color"),
+        triple("diffuse_direct"),
+        triple("emission"),
+    )
 
 
-def span(picture: Texture, camera: Camera) -> tuple[float, float] | None:
-    """(least, greatest) depth of what a picture of places shows, along the axis of the camera; None where it shows
-    nothing."""
-    target = device.texture(-(-picture.width // SPAN_BLOCK), -(-picture.height // SPAN_BLOCK))
+def depth_range(picture: Texture, camera: Camera) -> tuple[float, float] | None:
+    """(least, greatest) depth of a picture of positions along the axis of the camera; None where it shows nothing."""
+    target = device.texture(-(-picture.width // DEPTH_RANGE_BLOCK), -(-picture.height // DEPTH_RANGE_BLOCK))
     device.dispatch(
         "depth_range",
-        _axis_block(camera, (picture.width, picture.height)),
-        {"picture": picture, "span_out": target},
+        {"picture": picture, "range_out": target},
         device.groups(target.width, target.height),
+        depth_axis=_depth_axis(camera),
     )
-    found = device.read(target)
-    least, greatest = float(found[..., 0].min()), float(found[..., 1].max())
+    ranges = device.read(target)
+    least, greatest = float(ranges[..., 0].min()), float(ranges[..., 1].max())
     return (least, greatest) if least <= greatest else None
 
 
-def _axis_block(camera, size):
-    """A Parameters block with the row of a camera that gives depths, below 0 before it."""
+def _depth_axis(camera: Camera) -> np.ndarray:
     axis = camera.rotation[2]
-    block = device.parameters(frame=size)
-    block["rotation"][2] = *axis, -axis @ camera.position
-    return block
+    return np.array([*axis, -axis @ camera.position])
 
 
 def indirect(
     views: list[View],
     size: tuple[int, int],
-    settings: Settings | Draws,
+    settings: PaperSettings | RadiositySettings,
     world: np.ndarray | None = None,
     history: History | None = None,
 ) -> Texture:
     """The indirect light of the first view, as composite() makes it.
 
-    views, world: as gather_views() has them; the method Paper takes the first view alone. size: (width, height) of
-    views that are not coarse, of which there need be none. history: what the gather before left, averaged with this
-    one, which is left there in its place. Radiosity gathers once, whatever settings.gathers. Raises GpuUnavailable.
+    views, world: as in gather_views(); the method Paper takes the first view alone. size: (width, height) of views that
+    are not coarse, of which there need be none. history: of the gather before; it is averaged with this one, and holds
+    the mean afterwards. Radiosity gathers once, whatever settings.gathers. Raises GpuUnavailable.
     """
-    main, shown = views[0].camera, views[0].passes
-    if isinstance(settings, Settings):
-        channels = upload(shown)
-        pyramid = pack(channels, shown, main, settings)
+    main = views[0].camera
+    if isinstance(settings, PaperSettings):
+        passes = views[0].load_passes()
+        channels = upload(passes)
+        pyramid = pack(channels, passes, main, settings)
         merge(pyramid)
-        return composite(channels, pyramid, upsample(pyramid, gather(pyramid, settings)))
-    table = view_table(views, size, settings, world)
-    depths, emitters, receivers, channels = look(views, table)
-    base = pack(channels, shown, main, settings)
-    light, *_ = gather_all(settings, table, base, depths, emitters, receivers, lambda *_: None, lambda *_: None)
+        return composite(channels, pyramid, upsample(pyramid, gather(pyramid, settings)), settings.strength)
+    records, channels, passes = build_records(views, settings, world, size)
+    base = pack(channels, passes, main, settings)
+    light, *_ = gather_bounces(settings, base, records, lambda *_: None, lambda *_: None)
     if history is not None:
-        light = history.go_on(base, main, None, table, light, 1)
-    return composite(channels, base, smooth(base, light, table, SMOOTH_STEPS if settings.smooth else UNSMOOTHED))
+        light = history.go_on(base, main, None, records.table, light, 1)
+    return composite(channels, base, smooth(base, light, records.table, settings), settings.strength)
 
 
 def coarse_size(size: tuple[int, int]) -> tuple[int, int]:
     """(width, height) of coarse views beside others of `size`."""
-    across, up = layout(1, size)["depths"][:2]
+    across, up = layout(1, size)["depth_size"]
     return int(across), int(up)
 
 
@@ -112,19 +124,21 @@ class Mean:
     """The mean of pictures of one size. texture: (height, width), rgb, bottom row first; None before the first. count:
     of pictures."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.clear()
 
     def clear(self) -> None:
-        self.texture, self.count = None, 0
+        self.texture: Texture | None = None
+        self.count = 0
 
     def add(self, picture: Texture, size: tuple[int, int]) -> None:
-        """One more, as composite() makes it, of a frame of `size` (width, height)."""
+        """Add a picture, as composite() makes it, of a frame of `size` (width, height)."""
         self.count += 1
         before, self.texture = self.texture, device.texture(*size)
         device.dispatch(
             "running_mean",
-            device.parameters(frame=size, span=(self.count,)),
             {"indirect": picture, "mean": before or picture, "mean_out": self.texture},
             device.groups(*size),
+            size=size,
+            count=self.count,
         )

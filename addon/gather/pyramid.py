@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The levels of the pyramid, and the texels that each gathers from, as tables of offsets.
+"""The levels of the pyramid, and the regions that their texels gather from, as tables of offsets.
 
 Levels must tile the image: the finest takes the disk 0 < r < R around the receiver, every coarser one the ring from
 about R/2 to R of its own texels, which is where the finer one stopped. The coarsest is so small that its ring holds
@@ -10,16 +10,16 @@ from functools import cache
 
 import numpy as np
 
-TABLE_WIDTH = 256  # texels in a row of the table's texture; the shader is compiled with it
-MOST_LEVELS = 16  # of a frame: 16384 pixels across at the smallest radius have 15
-LARGEST_RADIUS = 140  # keeps a table under the 65,535 entries that the shader's random index can reach
+OFFSETS_WIDTH = 256  # entries in a row of the texture that holds a table of offsets
+MAX_LEVELS = 16  # of a frame: 16384 pixels across at the smallest radius have 15
+MAX_RADIUS = 140  # keeps a table below the 65,535 entries that the shader's random index can reach
 
 
 @cache
 def offsets(radius: int, finest: bool) -> np.ndarray:
     """(n, 2) int32, read-only: the offsets (x, y) of a region of `radius` texels, along a Z-order curve.
 
-    The order is what stratified sampling lives from: a part of the table is a compact patch of the region.
+    Stratified sampling needs the order: a part of the table is a compact patch of the region.
     """
     side = np.arange(-radius, radius + 1)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))
@@ -79,4 +79,7 @@ def samples_at(level: int, samples: int, texels: int) -> int:
 
 def _z_order(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """The bits of x and y, interleaved."""
-    return sum((((x >> bit) & 1) << (2 * bit)) | (((y >> bit) & 1) << (2 * bit + 1)) for bit in range(16))
+    code = np.zeros_like(x)
+    for bit in range(16):
+        code |= (((x >> bit) & 1) << (2 * bit)) | (((y >> bit) & 1) << (2 * bit + 1))
+    return code

@@ -1,377 +1,320 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light between the surfaces of several views, in as many bounces as are asked for, from top to bottom.
+"""The method Radiosity from top to bottom: light between the surfaces of several views, in any number of bounces.
 
-    depth maps of all views                  what each camera sees of any place
-    emitters, receivers                      blocks of every view's pixels, in world space
-    for each bounce but the last:            every view's receivers gather, and its emitters pass it on
+    depth maps of all views                  the visible surface in each direction of each camera
+    emitters, receivers                      records of blocks of every view's pixels, in world space
+    for each bounce but the last:            every view's receivers gather, and its emitters send that on
     the last one:                            the main view's base gathers; smooth, composite, read back
 
-A surface that several views show counts once, and what stands between two surfaces hides them from each other. The
-sizes below are for frames of any resolution: the cost of views and bounces is the same for all.
-docs/method/radiosity.md has what decided them.
+A surface that several views show counts once, and surfaces between two others block the light between them.
+docs/method/radiosity.md has the measurements that decided the constants.
 """
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from . import device, glossy
-from .paper import Cancelled, composite, pack, stopwatch, upload
-from .temporal import STRIDE, History, accumulate
-from .types import Draws, Gloss, View
+from .device import Texture
+from .shader_interface import EMITTER_TABLE_WIDTH, LIGHT_CHANNELS, RECORDS_WIDTH, SQUARE
+from .stages import (
+    Progress,
+    Pyramid,
+    Report,
+    composite,
+    frame_block,
+    pack,
+    read_picture,
+    reporter,
+    run_in_bands,
+    stopwatch,
+    upload,
+)
+from .temporal import SEED_STRIDE, History, accumulate
+from .types import Gloss, GpuPasses, Passes, RadiositySettings, View
+from .view_layout import KINDS, count_of, grid_of, has_world, own_table, rows_of, start_of, view_table, world_power
 
-DEPTHS_ACROSS = 320  # least texels along a depth map's longer side, and emitters along the main view's
-EMITTER, RECEIVER = 1, 8  # texels of the depth map along the side of another view's emitters, of any view's receivers
-STEPS = 24  # of the way to an emitter at which it is asked whether something stands there
-ENTRIES = 1 << 18  # of the table that emitters are drawn from
-BY_AREA = 0.5  # share of the draws that goes by area, the rest by power: where the light is dim, near it counts
-BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is passed on: many of them share its noise
+SHADOW_STEPS = 24  # along a shadow ray
+ENTRIES = 1 << 18  # of the table that emitters are sampled from
+BY_AREA = 0.5  # share of the table in proportion to area, the rest to power: near emitters count though they are dim
+BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is sent on: many of them average its noise
 SMOOTH_STEPS = 1, 2  # texels between the taps of each pass that smooths
 UNSMOOTHED = (0,)  # all taps are the texel itself
-KINDS = "emitters", "receivers"
+
+
+@dataclass(frozen=True, eq=False)
+class Records:
+    """All views on the GPU. table: the VIEWS block. depths: their depth maps, one above the other. emitters, receivers:
+    textures of records (shaders/radiosity/emit.glsl)."""
+
+    table: np.ndarray
+    depths: Texture
+    emitters: Texture
+    receivers: Texture
 
 
 def gather_views(
     views: list[View],
-    settings: Draws,
+    settings: RadiositySettings,
     world: np.ndarray | None = None,
     *,
     history: History | None = None,
-    progress=lambda stage, fraction: False,
+    progress: Progress = lambda stage, fraction: False,
     timings: dict[str, float] | None = None,
     broken: dict[str, int] | None = None,
     gloss: Gloss | None = None,
 ) -> np.ndarray:
     """The indirect light of the first view from the surfaces of all, after settings.bounces.
 
-    views: at most device.MOST_VIEWS, all of one resolution. world: (4, 3), by how much EEVEE's world lights a white
-    surface with normal n, world[0] + n @ world[1:], W sr^-1 m^-2; what surfaces cover of it is taken away, which needs
-    settings.visibility. history: what the frame before left, averaged with this one, which is left there in its place;
-    an empty one where there is none before. gloss: of the first view; its picture is filled in, the mean of
-    settings.gathers. Returns (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1
-    m^-2, below 0 where the world's light goes; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled:
-    as gather_indirect() has them; broken speaks of the first view.
+    views: at most MAX_VIEWS, all of one resolution. world: (4, 3), EEVEE's world light on a white surface with normal n
+    is world[0] + n @ world[1:], W sr^-1 m^-2; the part of it that surfaces cover is taken away, which needs
+    settings.visibility. history: of the frame before, or an empty one; it is averaged with this frame's light, and holds
+    the mean afterwards. gloss: of the first view; its picture is filled in, the mean of settings.gathers. Returns
+    (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1 m^-2, below 0 where the
+    world's light is covered; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as in
+    gather_indirect(); broken is of the first view.
     """
-    lap = stopwatch(timings)
-
-    def report(stage, fraction):
-        if progress(stage, fraction):
-            raise Cancelled
-
-    main, size = views[0].camera, views[0].passes.size
-    table = view_table(views, size, settings, world)
+    lap, report = stopwatch(timings), reporter(progress)
+    main = views[0].camera
+    records, channels, passes = build_records(views, settings, world, report=report, broken=broken)
+    size, table, motion = passes.size, records.table, passes.motion if isinstance(passes, Passes) else None
     settings = replace(settings, start=start_of(settings, size))
-    depths, emitters, receivers, channels = look(views, table, report, broken)
-    lap("views", receivers)
-    base = pack(channels, views[0].passes, main, settings)
-    for name in device.LIGHT_CHANNELS:
+    lap("views", records.receivers)
+    base = pack(channels, passes, main, settings)
+    for name in LIGHT_CHANNELS:
         del channels[name]
+    del passes
+    specular = specular_emitters(views, records) if gloss is not None else None
+    pictures = []
 
-    shown = []
-
-    def gathers(light, first, last):
-        """The mean of `light`, that of the first gathers, and of more."""
+    def gathers(light: Texture | None, first: int, last: int) -> Texture:
+        """The mean of `light`, which is that of gathers up to `first`, and of those up to `last`."""
         for number in range(first, last):
-            each = replace(settings, seed=settings.seed + STRIDE * number)
-            gathered, sent, irradiance = gather(
-                each,
-                table,
-                base,
-                depths,
-                emitters,
-                receivers,
-                lap,
-                lambda stage, fraction: report(stage, (number + fraction) / last),
+            each = replace(settings, seed=settings.seed + SEED_STRIDE * number)
+            gathered, radiance, irradiance = gather(
+                each, base, records, lap, lambda stage, fraction: report(stage, (number + fraction) / last)
             )
             light = accumulate(base, light, gathered, 1, number, drift=False) if number else gathered
-            if gloss is not None and number < settings.gathers:
-                textures = {
-                    "emitters": emitters,
-                    "radiance": shining(views, table, depths, irradiance, sent),
-                    "depths": depths,
-                }
-                shown.append(glossy.gather(gloss, channels, base, table, each, report, textures))
+            if gloss is not None and specular is not None:
+                radiance = add_specular(specular, irradiance, radiance, table)
+                textures = {"emitters": records.emitters, "radiance": radiance, "depths": records.depths}
+                pictures.append(glossy.gather(gloss, channels, base, table, each, report, textures))
                 lap("glossy")
                 del textures
-            del gathered, sent, irradiance
+            del gathered, radiance, irradiance
+        assert light is not None
         return light
 
     light = gathers(None, 0, settings.gathers)
-    if history:
-        light = history.go_on(base, main, views[0].passes.motion, table, light, settings.gathers, gathers)
+    specular = None  # the gathers for a new history need none
+    if history is not None:
+        light = history.go_on(base, main, motion, table, light, settings.gathers, gathers)
     if gloss is not None:
-        gloss.picture = sum(shown) / len(shown)
+        gloss.picture = sum(pictures) / len(pictures)
 
     report("upsample", 1.0)
-    indirect = composite(channels, base, smooth(base, light, table, SMOOTH_STEPS if settings.smooth else UNSMOOTHED))
+    indirect = composite(channels, base, smooth(base, light, table, settings), settings.strength)
     lap("upsample", indirect)
-    width, height = size
-    picture = device.read(indirect).reshape(height, -1, 3)[:, :width]
+    picture = read_picture(indirect, size[0])
     lap("read_back")
     return picture
 
 
-def gather(settings, table, base, depths, emitters, receivers, lap, report):
-    """(what the main view's base receives after all bounces, W m^-2: a texture of its size; what emitters send by
-    then; what receivers had gathered for that)."""
-    irradiance = device.texture(device.RECORDS_WIDTH, rows_of(table["receivers"]))
+def gather(
+    settings: RadiositySettings, base: Pyramid, records: Records, lap: Callable[..., None], report: Report
+) -> tuple[Texture, Texture, Texture]:
+    """(irradiance of the main view's base after all bounces, W m^-2, a texture of its size; radiance of the emitters
+    then; irradiance of the receivers that it comes from)."""
+    table, emitters = records.table, records.emitters
+    irradiance = device.texture(RECORDS_WIDTH, rows_of(table, "receivers"))
     irradiance.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
-    sent = radiate(emitters, irradiance, table)
+    radiance = radiate(emitters, irradiance, table)
     for bounce in range(1, settings.bounces):
         report("bounces", (bounce - 1) / settings.bounces)
-        draws = draw_table(sent, table, settings.seed + bounce)
-        table["draws"][:2] = BOUNCE_GROUPS, BOUNCE_CANDIDATES
-        draw(
-            "draw_blocks",
-            settings.seed + bounce,
-            table,
-            irradiance,
-            {"receivers": receivers, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
-        )
-        sent = radiate(emitters, irradiance, table)
-    lap("bounces", sent)
+        again = replace(settings, seed=settings.seed + bounce, groups=BOUNCE_GROUPS, candidates=BOUNCE_CANDIDATES)
+        sample_emitters("sample_blocks", again, records, radiance, irradiance, {"receivers": records.receivers})
+        radiance = radiate(emitters, irradiance, table)
+    lap("bounces", radiance)
 
-    draws = draw_table(sent, table, settings.seed)
-    table["draws"][:2] = settings.groups, settings.candidates
-    *_, across, up = base.boxes[0]
-    gathered = device.texture(across, up)
-    draw(
-        "draw_base",
-        settings.seed,
-        table,
+    gathered = device.texture(*base.size)
+    sample_emitters(
+        "sample_base",
+        settings,
+        records,
+        radiance,
         gathered,
-        {"surfels": base.surfels, "emitters": emitters, "radiance": sent, "table": draws, "depths": depths},
-        base.parameters,
+        {"surfels": base.surfels},
         lambda done: report("gather", done),
+        frame=base.frame,
     )
     lap("gather", gathered)
-    return gathered, sent, irradiance
+    return gathered, radiance, irradiance
 
 
-def smooth(base, light, table, steps=SMOOTH_STEPS):
-    """The base's irradiance with less noise: a texture of its size."""
-    *_, across, up = base.boxes[0]
-    block = base.parameters.copy()
+def smooth(base: Pyramid, light: Texture, table: np.ndarray, settings: RadiositySettings) -> Texture:
+    """The base's irradiance with less noise, if settings.smooth: a texture of its size."""
+    steps = SMOOTH_STEPS if settings.smooth else UNSMOOTHED
     for step in steps:
-        block["span"][:2] = step, step == steps[-1]
-        total = device.texture(across, up)
+        total = device.texture(*base.size)
         device.dispatch(
             "smooth",
-            block,
             {"surfels": base.surfels, "irradiance": light, "total_out": total},
-            device.groups(across, up),
-            table,
+            device.groups(*base.size),
+            frame=base.frame,
+            views=table,
+            step=step,
+            is_last=step == steps[-1],
+            has_world=has_world(table),
+            strength=settings.strength,
         )
         light = total
     return light
 
 
-def look(views, table, report=lambda stage, fraction: None, broken=None):
-    """(depth maps, emitters, receivers, channels of the main view) of all views. One view's passes are held at a
-    time."""
-    depths = device.texture(*table["depths"][:2] * (1, len(views)), "RG32F")
+def build_records(
+    views: list[View],
+    settings: RadiositySettings,
+    world: np.ndarray | None = None,
+    size: tuple[int, int] | None = None,
+    report: Report = lambda stage, fraction: None,
+    broken: dict[str, int] | None = None,
+) -> tuple[Records, dict[str, Texture], Passes | GpuPasses]:
+    """(records of all views, channels and passes of the main view). size: (width, height) of views that are not coarse,
+    if it is not the main view's own. One view's passes are held at a time."""
+    passes: Passes | GpuPasses | None = views[0].load_passes()
+    assert passes is not None
+    table = view_table(views, size or passes.size, settings, world)
+    width, height = (int(side) for side in table["depth_size"])
+    depths = device.texture(width, height * len(views), "RG32F")
     for index, view in enumerate(views):
         report("views", index / len(views) / 2)
-        shown = view.passes
-        channels = upload(shown, light=False)
+        passes = passes or view.load_passes()
         device.dispatch(
             "depths",
-            camera_block(view, index, shown.size),
-            channels | {"depths_out": depths},
-            device.groups(*table["depths"][:2]),
-            own_table(view, table),
+            upload(passes, light=False) | {"depths_out": depths},
+            device.groups(width, height),
+            frame=frame_block(view.camera, passes.size),
+            views=own_table(view, table),
+            view=index,
         )
-        del shown  # the next one is loaded before its name is given on
-    targets = {kind: device.texture(4 * device.RECORDS_WIDTH, rows_of(table[kind])) for kind in KINDS}
+        if index + 1 < len(views):
+            passes = None  # before the next ones are loaded
+    targets = {kind: device.texture(4 * RECORDS_WIDTH, rows_of(table, kind)) for kind in KINDS}
+    channels: dict[str, Texture] = {}
     for index in reversed(range(len(views))):  # the main one last: its channels are needed again
         report("views", 1 - (index + 1) / len(views) / 2)
-        channels, shown = None, views[index].passes  # none of two views at a time
-        channels = upload(shown, None if index else broken)
-        name = "emit_with_normals" if shown.lacks_normals() else "emit"
+        channels.clear()
+        passes = passes or views[index].load_passes()
+        channels = upload(passes, None if index else broken)
         for kind, target in targets.items():
-            block = camera_block(views[index], index, shown.size)
-            block["span"][1] = kind == "receivers"
-            device.dispatch(
-                name,
-                block,
-                channels | {"depths": depths, "records_out": target},
-                device.groups(*table[kind][index][1:3]),
-                own_table(views[index], table),
-            )
-    return depths, *targets.values(), channels
+            emit(views[index], index, passes, channels, depths, own_table(views[index], table), kind, target)
+        if index:
+            passes = None
+    assert passes is not None
+    return Records(table, depths, **targets), channels, passes
 
 
-def shining(views, table, depths, irradiance, sent):
-    """As radiate() gives `sent`, with what the gloss of emitters sends, as if it went into all directions alike:
-    Glossy Color times what lamps and world make of it in their view, and the light that their receivers have
-    gathered."""
-    target, size = device.texture(4 * device.RECORDS_WIDTH, rows_of(table["emitters"])), views[0].passes.size
+def emit(
+    view: View,
+    index: int,
+    passes: Passes | GpuPasses,
+    channels: dict[str, Texture],
+    depths: Texture,
+    table: np.ndarray,
+    kind: str,
+    target: Texture,
+) -> None:
+    """Write one view's records of a kind."""
+    device.dispatch(
+        "emit_with_normals" if passes.lacks_normals() else "emit",
+        channels | {"depths": depths, "records_out": target},
+        device.groups(*grid_of(table, kind, index)),
+        frame=frame_block(view.camera, passes.size),
+        views=table,
+        view=index,
+        receives=kind == "receivers",
+    )
+
+
+def specular_emitters(views: list[View], records: Records) -> Texture:
+    """Records of emitters with the specular light of lamps and world in place of the diffuse light, and with Glossy
+    Color in place of the albedo; black where a view has none."""
+    target = device.texture(4 * RECORDS_WIDTH, rows_of(records.table, "emitters"))
     target.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
     for index, view in enumerate(views):
-        shown = view.shine()
-        if shown is not None:
-            device.dispatch(
-                "emit_with_normals" if shown.lacks_normals() else "emit",
-                camera_block(view, index, size),
-                upload(shown) | {"depths": depths, "records_out": target},
-                device.groups(*table["emitters"][index][1:3]),
-                table,
-            )
-    more = device.read(radiate(target, irradiance, table)).copy()
-    more[..., 3] = 0  # the area, which both have
-    return device.texture(sent.width, sent.height, data=device.read(sent) + more)
+        passes = view.load_specular()
+        if passes is not None:
+            emit(view, index, passes, upload(passes), records.depths, records.table, "emitters", target)
+    return target
 
 
-def start_of(settings, size):
-    """Pixels along a base texel: those asked for, but no coarser than the depth maps. Small pictures cost little
-    enough."""
-    return max(start for start in (1, 2, 4) if start <= min(settings.start, step_of(size)))
+def radiate(emitters: Texture, irradiance: Texture, table: np.ndarray) -> Texture:
+    """(rows, RECORDS_WIDTH) texture: radiance and area of every emitter, given the receivers' irradiance."""
+    return _radiate("radiate", {"emitters": emitters, "irradiance": irradiance}, table)
 
 
-def step_of(size):
-    """Pixels along a texel of a depth map."""
-    return max(1, max(size) // DEPTHS_ACROSS)
+def add_specular(specular: Texture, irradiance: Texture, radiance: Texture, table: np.ndarray) -> Texture:
+    """A texture that radiate() made, with the specular light of the emitters added, as if it were diffuse: Glossy Color
+    times that of lamps and world, and of the irradiance of the receivers."""
+    textures = {"emitters": specular, "irradiance": irradiance, "diffuse_radiance": radiance}
+    return _radiate("radiate_specular", textures, table)
 
 
-def view_table(
-    views: list[View], size: tuple[int, int], settings: Draws, world: np.ndarray | None = None
-) -> np.ndarray:
-    """A Views block: cameras, and which records are whose. size: (width, height) of the views in pixels. world: as
-    gather_views() has it."""
-    table, origin = layout(len(views), size), np.asarray(views[0].camera.position, float)
-    if world is not None and settings.visibility:
-        table["world"][:, :3] = world
-    table["draws"][2:] = ENTRIES, STEPS if settings.visibility else 0
-    for index, view in enumerate(views):
-        camera = view.camera
-        eye = np.asarray(camera.position, float) - origin
-        table["rotation"][index] = np.concatenate([camera.rotation, -(camera.rotation @ eye)[:, None]], axis=1)
-        table["projection"][index] = *(np.asarray(camera.scale) * (1 if view.coarse else step_of(size))), *camera.offset
-        table["eye"][index] = *eye, camera.orthographic
-    return table
-
-
-def own_table(view: View, table: np.ndarray) -> np.ndarray:
-    """The Views block for passes that read the picture of this view, whose pixels it counts in."""
-    if not view.coarse:
-        return table
-    own = table.copy()
-    for sides in (own["depths"][2:3], *(own[kind][:, 3] for kind in KINDS)):
-        sides //= table["depths"][2]
-    return own
-
-
-def layout(count: int, size: tuple[int, int]) -> np.ndarray:
-    """A Views block of so many views, with the sizes in it: depth maps, and which records are whose."""
-    width, height = size
-    step, table, first = step_of(size), np.zeros((), device.VIEWS), dict.fromkeys(KINDS, 0)
-    table["depths"] = -(-width // step), -(-height // step), step, count
-    for index in range(count):
-        for name, side in zip(KINDS, (step * (EMITTER if index else 1), step * RECEIVER)):
-            across, up = -(-width // side), -(-height // side)
-            table[name][index] = first[name], across, up, side
-            first[name] += across * up
-    return table
-
-
-def camera_block(view: View, index: int, size: tuple[int, int]) -> np.ndarray:
-    """A Parameters block with the camera of one view, for passes that read its channels."""
-    camera = view.camera
-    return device.parameters(
-        rotation=camera.rotation,
-        projection=(*camera.scale, *camera.offset),
-        span=(index,),
-        frame=(*size, 1, int(camera.orthographic)),
-    )
-
-
-def radiate(emitters, irradiance, table):
-    """(rows, RECORDS_WIDTH) texture: radiance and area of every emitter, given what the receivers have gathered."""
-    sent = device.texture(device.RECORDS_WIDTH, rows_of(table["emitters"]))
+def _radiate(name: str, textures: dict[str, Texture], table: np.ndarray) -> Texture:
+    radiance = device.texture(RECORDS_WIDTH, rows_of(table, "emitters"))
     device.dispatch(
-        "radiate",
-        device.parameters(),
-        {"emitters": emitters, "irradiance": irradiance, "radiance_out": sent},
-        device.groups(sent.width, sent.height),
-        table,
+        name,
+        textures | {"radiance_out": radiance},
+        device.groups(radiance.width, radiance.height),
+        views=table,
     )
-    return sent
+    return radiance
 
 
-def draw_table(sent, table, seed):
-    """The table that emitters are drawn from, each as often as its share of all power and of all area; table["odds"]
-    gets the factors that give those shares."""
-    light = device.read(sent).reshape(-1, 4)[: count_of(table["emitters"])].astype(np.float64)
-    area, world = light[:, 3], np.abs(table["world"][0]).sum()
+def emitter_table(radiance: Texture, table: np.ndarray, seed: int) -> tuple[Texture, dict[str, np.float32]]:
+    """(the table that emitters are sampled from, each in proportion to its share of all power and of all area; the
+    options of the passes "sample_..." from which they compute its pdf)."""
+    light = device.read(radiance).reshape(-1, 4)[: count_of(table, "emitters")].astype(np.float64)
+    area, world = light[:, 3], world_power(table)
     power = np.abs(light[:, :3]).sum(-1) + world
     whole, bright = area.sum(), (power * area).sum()
     by_area = BY_AREA if bright > 0 else 1.0
-    table["odds"][:3] = (1 - by_area) / bright if bright > 0 else 0.0, by_area / whole if whole > 0 else 0.0, world
-    chances = np.cumsum((table["odds"][0] * power + table["odds"][1]) * area)
-    at = (np.arange(ENTRIES) + np.random.default_rng(seed & 0xFFFFFFFF).random(ENTRIES)) / ENTRIES * chances[-1]
-    numbers = np.minimum(np.searchsorted(chances, at), len(chances) - 1).astype(np.float32)
-    return device.texture(device.DRAWS_WIDTH, ENTRIES // device.DRAWS_WIDTH, "R32F", numbers)
+    power_pdf = np.float32((1 - by_area) / bright if bright > 0 else 0.0)
+    area_pdf = np.float32(by_area / whole if whole > 0 else 0.0)
+    shares = np.cumsum((power_pdf * power + area_pdf) * area)
+    at = (np.arange(ENTRIES) + np.random.default_rng(seed & 0xFFFFFFFF).random(ENTRIES)) / ENTRIES * shares[-1]
+    numbers = np.minimum(np.searchsorted(shares, at), len(shares) - 1).astype(np.float32)
+    entries = device.texture(EMITTER_TABLE_WIDTH, ENTRIES // EMITTER_TABLE_WIDTH, "R32F", numbers)
+    return entries, {"power_pdf": power_pdf, "area_pdf": area_pdf, "world_power": world}
 
 
-def draw(name, seed, table, target, textures, block=None, after_band=lambda done: None):
-    """Gather into `target` by one of the passes "draw_...", some work groups at a time: whole rows of them, or a part
-    of one where a row alone would take too long."""
-    block = device.parameters() if block is None else block.copy()
-    block["band"][1] = device.as_int32(seed)
-    across, up = device.groups(target.width, target.height)
-    each = int(np.prod(device.SQUARE) * np.prod(table["draws"][:2]))  # candidates of a work group
-    done = 0
-    while done < across * up:
-        row, column = divmod(done, across)
-        fitting = max(1, int(device.band(name)) // each)
-        wide, high = min(fitting, across - column), 1
-        if wide == across:
-            high = min(fitting // across, up - row)
-        block["band"][[0, 2]] = row * device.SQUARE[1], column * device.SQUARE[0]
-        device.run_band(name, wide * high * each, block, textures | {"irradiance_out": target}, (wide, high), table)
-        done += wide * high
-        after_band(done / (across * up))
-
-
-def gpu_bytes(width: int, height: int, settings: Draws, further: int, shines: bool, averages: bool) -> int:
-    """As memory.gpu_bytes()."""
-    table = layout(1 + further, (width, height))
-    depths = 8 * int(table["depths"][0] * table["depths"][1]) * (1 + further)
-    emitters, receivers = (device.RECORDS_WIDTH * rows_of(table[kind]) for kind in KINDS)
-    start = start_of(settings, (width, height))
-    base = -(-width // start) * -(-height // start)
-    channel = -(-width // 4) * height * 16
-    past = 2 * 16 * base if averages else 0  # surfels and light of the frame before
-    rebuilt = 3 * 16 * base if averages else 0  # what is known of it, the first gathers, and the mean of all
-    known = 16 * base if averages else 0
-    mean = 16 * base if settings.gathers > 1 else 0
-    records = depths + 64 * (emitters + receivers)
-    packed = records + 16 * base + 7 * channel
-    gathering = packed + past + mean + 16 * (receivers + emitters)
-    most = packed + past + max(mean, rebuilt) + 16 * (receivers + emitters)
-    steps = [
-        packed + 6 * channel + past,
-        most + max(4 * ENTRIES + 16 * max(emitters, base), 8 * ENTRIES),  # bounces, then the base
-        packed + known + 16 * 3 * base,  # smoothed twice
-        packed + known + 16 * 2 * base + 3 * channel,
-    ]  # composited
-    if mean or rebuilt:
-        steps.append(most + 16 * 2 * base)
-    if shines:
-        gathered = gathering + 16 * base
-        steps += [
-            gathered + 64 * emitters + max(13 * channel, 16 * emitters),
-            gathered + 16 * emitters + glossy.gpu_bytes(base, channel),
-        ]
-    return max(steps)
-
-
-def count_of(grids):
-    """Records of all views."""
-    first, across, up, _ = grids[np.argmax(grids[:, 0])]
-    return int(first + across * up)
-
-
-def rows_of(grids):
-    """Rows of RECORDS_WIDTH that they fill."""
-    return -(-count_of(grids) // device.RECORDS_WIDTH)
+def sample_emitters(
+    name: str,
+    settings: RadiositySettings,
+    records: Records,
+    radiance: Texture,
+    target: Texture,
+    receivers: dict[str, Texture],
+    after_band: Callable[[float], None] = lambda done: None,
+    **named: Any,
+) -> None:
+    """Gather into `target` by one of the passes "sample_...". radiance: of the emitters. receivers: the texture that
+    holds them."""
+    entries, pdf = emitter_table(radiance, records.table, settings.seed)
+    run_in_bands(
+        name,
+        SQUARE[0] * SQUARE[1] * settings.groups * settings.candidates,
+        receivers | {"emitters": records.emitters, "radiance": radiance, "table": entries, "depths": records.depths},
+        target,
+        after_band,
+        views=records.table,
+        seed=settings.seed & 0xFFFFFFFF,
+        groups=settings.groups,
+        candidates=settings.candidates,
+        entries=ENTRIES,
+        shadow_steps=SHADOW_STEPS if settings.visibility else 0,
+        **pdf,
+        **named,
+    )

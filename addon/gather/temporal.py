@@ -1,128 +1,140 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mean over gathers: of one frame, and of the frames before it as far as they show the same surfaces.
+"""The mean over gathers: of one frame, and of the frames before it where they show the same surfaces.
 
-    reproject     what the frame before knew of the light on the surfaces of this one
-    accumulate    the mean of that and of what is gathered now, less what surely changed
+    reproject     the history of this frame's surfaces, from the frame before
+    accumulate    the mean of the history, less what has changed, and of this frame's irradiance
 
-An exponential mean: what is known weighs as much as FRAMES - 1 frames at most. Its variance is then that of 2 FRAMES -
-1 gathers, and so many are made of a frame that knows nothing, or too little: a sequence begins with the noise that it
-goes on with, wherever it begins. docs/method/temporal.md has the mathematics and the measurements.
+An exponential mean: the history weighs FRAMES - 1 frames at most. Its variance is then that of 2 FRAMES - 1 gathers. A
+frame with no history, or too little, is gathered that often, so that a sequence has the same noise from its first frame
+on. docs/method/temporal.md has the mathematics and the measurements.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import device
-from .paper import Pyramid, Texture
+from .device import Texture
+from .stages import Pyramid
 from .types import Camera
+
+Motion = tuple[np.ndarray, np.ndarray]
 
 FRAMES = 5
 REBUILT = 2 * FRAMES - 1  # gathers of a frame without a history
-LEAST_KNOWN = 0.5  # share of the picture's surfaces whose light must be known from the frames before
-STRIDE = 101  # between the seeds of two gathers of a frame: each uses a few of its own for bounces
+MIN_KNOWN = 0.5  # share of the picture's surfaces that must have a history
+SEED_STRIDE = 101  # between the seeds of two gathers of a frame: each takes some more, one a bounce
 
 
 @dataclass(eq=False)
 class History:
-    """What a frame leaves to the next. base: its surfaces. light: (h, w) texture, rgb the irradiance of each base
-    texel, a the number of gathers. camera: the main one. Empty before the first frame."""
+    """The light that a frame leaves to the next. base: its surfaces. light: (h, w) texture, rgb the irradiance of each
+    base texel, a the number of gathers that it is the mean of. camera: the main one. Empty before the first frame."""
 
     base: Pyramid | None = None
     light: Texture | None = None
     camera: Camera | None = None
 
-    def go_on(self, base, camera, motion, views, light, gathers, more=None) -> Texture:
-        """The mean of `light`, that of so many gathers of a frame, and of what is known; which is kept for the next
-        frame.
+    def go_on(
+        self,
+        base: Pyramid,
+        camera: Camera,
+        motion: Motion | None,
+        views: np.ndarray,
+        light: Texture,
+        gathers: int,
+        more: Callable[[Texture, int, int], Texture] | None = None,
+    ) -> Texture:
+        """The mean of the history and of `light`, that of so many gathers of a frame; it becomes the history.
 
-        base, camera: of the frame. motion: gather.Passes.motion. views: the Views block. more(light, first, last): the
-        mean of `light`, which is that of gathers up to `first`, and of those up to `last`; without it no frame is
-        gathered more than once."""
-        known, earlier = reproject(self, base, camera, motion, views), (FRAMES - 1) * gathers
-        mean = accumulate(base, known, light, gathers, earlier, drift=True)
+        base, camera: of the frame. motion: of gather.Passes. views: the VIEWS block. more(light, first, last): the mean
+        of `light`, which is that of gathers up to `first`, and of those up to `last`; without it a frame is not
+        gathered again where its history is too little."""
+        history, earlier = reproject(self, base, camera, motion, views), (FRAMES - 1) * gathers
+        mean = accumulate(base, history, light, gathers, earlier, drift=True)
         if more and gathers < REBUILT and is_new(mean, gathers):
             del mean
             light = more(light, gathers, REBUILT)
-            mean = accumulate(base, known, light, REBUILT, earlier, drift=True)
+            mean = accumulate(base, history, light, REBUILT, earlier, drift=True)
         self.base, self.light, self.camera = base, mean, camera
         return mean
 
     def fits(self, base: Pyramid, camera: Camera) -> bool:
-        """Whether its frame can be looked up from one with this base."""
+        """Whether a frame with this base and camera can use it."""
         return (
-            self.light is not None
-            and self.base.boxes[0] == base.boxes[0]
+            self.base is not None
+            and self.camera is not None
+            and self.base.size == base.size
             and self.camera.orthographic == camera.orthographic
         )
 
 
-def reproject(history: History, base: Pyramid, camera: Camera, motion, views: np.ndarray) -> Texture | None:
-    """What the history knows of the base's texels, as History.light has it, with a = 0 where it knows nothing and -1
-    where there is no surface. motion: gather.Passes.motion. views: the Views block. None where it can't be looked
-    up."""
-    if not history.fits(base, camera):
+def reproject(
+    history: History, base: Pyramid, camera: Camera, motion: Motion | None, views: np.ndarray
+) -> Texture | None:
+    """The history of the base's texels, as History.light, with a = 0 where it shows nothing of the surface and -1 where
+    there is no surface. motion: of gather.Passes. views: the VIEWS block. None where the history does not fit."""
+    if history.base is None or history.light is None or history.camera is None or not history.fits(base, camera):
         return None
-    start = int(base.parameters["frame"][2])
-    views["past"] = past_rows(history.camera, camera.position, start)
-    block = base.parameters.copy()
-    block["span"][0] = motion is not None
-    *_, across, up = base.boxes[0]
-    known = device.texture(across, up)
+    start, past = int(base.frame["start"]), history.camera
+    reprojected = device.texture(*base.size)
     device.dispatch(
         "reproject",
-        block,
         {
             "surfels": base.surfels,
             "past_surfels": history.base.surfels,
             "past_light": history.light,
-            "motion": _motion_texture(motion, start, across, up),
-            "known_out": known,
+            "motion": _motion_texture(motion, start, *base.size),
+            "history_out": reprojected,
         },
-        device.groups(across, up),
-        views,
+        device.groups(*base.size),
+        frame=base.frame,
+        views=views,
+        has_motion=motion is not None,
+        past_scale=np.asarray(past.scale) * start,
+        past_offset=past.offset,
+        past_rotation=past_rotation(past, camera.position),
     )
-    return known
+    return reprojected
 
 
 def accumulate(
-    base: Pyramid, known: Texture | None, irradiance: Texture, gathers: int, earlier: int, *, drift: bool
+    base: Pyramid, history: Texture | None, irradiance: Texture, gathers: int, earlier: int, *, drift: bool
 ) -> Texture:
-    """The mean of `known`, as reproject() gives it, which weighs `earlier` gathers at most, and of `irradiance`, which
+    """The mean of the history, from reproject(), which weighs `earlier` gathers at most, and of the irradiance, which
     is that of `gathers`. drift: whether the light may have changed in between."""
-    *_, across, up = base.boxes[0]
-    if known is None:
-        known = device.texture(across, up)
-        known.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
-    light = device.texture(across, up)
-    block = base.parameters.copy()
-    block["span"][:3] = gathers, earlier, drift
+    if history is None:
+        history = device.texture(*base.size)
+        history.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
+    light = device.texture(*base.size)
     device.dispatch(
         "accumulate",
-        block,
-        {"surfels": base.surfels, "irradiance": irradiance, "known": known, "light_out": light},
-        device.groups(across, up),
+        {"surfels": base.surfels, "irradiance": irradiance, "history": history, "light_out": light},
+        device.groups(*base.size),
+        frame=base.frame,
+        gathers=gathers,
+        earlier_gathers=earlier,
+        allows_drift=drift,
     )
     return light
 
 
 def is_new(light: Texture, gathers: int) -> bool:
-    """Whether of a frame's surfaces less than LEAST_KNOWN have more to their light than so many gathers of this
-    frame."""
+    """Whether less than MIN_KNOWN of a frame's surfaces have a mean over more than so many gathers, this frame's."""
     counts = device.read(light)[..., 3]
-    return np.count_nonzero(counts > gathers) <= LEAST_KNOWN * np.count_nonzero(counts >= 0)
+    return bool(np.count_nonzero(counts > gathers) <= MIN_KNOWN * np.count_nonzero(counts >= 0))
 
 
-def past_rows(past: Camera, origin, start: int) -> np.ndarray:
-    """The field "past" of a Views block whose world has its origin at `origin`."""
-    rows = np.zeros((4, 4), np.float32)
-    rows[:3, :3] = past.rotation
-    rows[:3, 3] = past.rotation @ (np.asarray(origin, float) - np.asarray(past.position, float))
-    rows[3] = *(np.asarray(past.scale) * start), *past.offset
+def past_rotation(past: Camera, origin: np.ndarray) -> np.ndarray:
+    """(3, 4) rows: from the world with its origin at `origin` to a camera's view."""
+    rows = np.zeros((3, 4), np.float32)
+    rows[:, :3] = past.rotation
+    rows[:, 3] = past.rotation @ (np.asarray(origin, float) - np.asarray(past.position, float))
     return rows
 
 
-def _motion_texture(motion, start, across, up):
+def _motion_texture(motion: Motion | None, start: int, across: int, up: int) -> Texture:
     """(up, across), bottom row first: motion of the pixel in each base texel's middle, in base texels."""
     plane = np.zeros((up, across, 4), np.float32)
     if motion is not None:

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the gather is given: a camera, EEVEE's passes and the settings. Plain numpy, no GPU."""
+"""The input of the gather: cameras, EEVEE's passes and the settings. Plain numpy, no GPU."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from .pyramid import LARGEST_RADIUS
+from .pyramid import MAX_RADIUS
 
-# Draws of a texel. Mesa's software driver ends the loops of a shader, without a word, after 65,535 rounds in all:
-# those along the ways to this many emitters, in ten views, and over 16 candidates each, stay within it.
-MOST_GROUPS = 128
+# Shadow rays of a texel. Mesa's software driver ends the loops of a shader silently after 65,535 rounds in all: those
+# along so many shadow rays, in ten views, and over 16 candidates for each, stay below that.
+MAX_GROUPS = 128
+MAX_VIEWS = 10  # the main one among them
 FARTHEST = 1e9  # metres; EEVEE writes 1e10 where there is no surface
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """How pixels see the world. Lens shift, pixel aspect and a render border all live in scale and offset.
+    """The projection of a picture. Lens shift, pixel aspect and a render border are part of scale and offset.
 
     Pixel (i, j), j counted from the bottom row, has the view ray q = offset + scale * (i + 0.5, j + 0.5). Its point
     at planar depth z (metres, above 0) is (q.x z, q.y z, -z) in perspective and (q.x, q.y, -z) in orthographic.
@@ -40,8 +41,8 @@ class Passes:
     depth: planar, metres; background 1e10 (anything above 1e9, or 0 and below, is no surface). normal: world space.
     diffuse_color: albedo. diffuse_direct: direct light without the albedo, as radiance of a white surface.
     emission: radiance. Radiance is in W sr^-1 m^-2, as linear as EEVEE writes it.
-    motion: (x, y) in pixels, y up, from where a surface is to where it was in the frame before; None where that is not
-    known.
+    motion: (x, y) in pixels, y up, from a surface's position in this frame to that in the frame before; None where it
+    is not known.
     """
 
     depth: np.ndarray
@@ -58,7 +59,7 @@ class Passes:
         return width, height
 
     def channels(self) -> dict[str, Triple]:
-        """The arrays of each pass that light comes from, depth as a pass of one channel."""
+        """The arrays of each pass but motion; depth is a pass of one channel."""
         passes = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "motion"}
         return passes | {"depth": (self.depth,)}
 
@@ -70,8 +71,8 @@ class Passes:
         return bool(without.any())
 
     def broken(self) -> dict[str, int]:
-        """How many pixels hold NaN or infinity, by pass; empty for sound passes. The shaders leave such pixels out as
-        emitters, so this is only what a message to people needs."""
+        """Number of pixels with NaN or infinity, by pass; empty for sound passes. Only for messages to people: the
+        shaders leave out such pixels as emitters."""
         counts = {
             name: int(np.count_nonzero(~np.logical_and.reduce([np.isfinite(array) for array in arrays])))
             for name, arrays in self.channels().items()
@@ -80,45 +81,44 @@ class Passes:
 
 
 @dataclass(eq=False)
-class Drawn:
-    """Passes that are on the GPU already. size: (width, height) in pixels. textures: as pipeline.upload() makes them
-    of Passes."""
+class GpuPasses:
+    """Passes that are on the GPU already. size: (width, height) in pixels. textures: by channel, as stages.upload()
+    makes them."""
 
     size: tuple[int, int]
     textures: dict
 
     def lacks_normals(self) -> bool:
-        """As Passes have it. There may be some: nobody has looked."""
+        """True: there may be surfaces without a normal, and to look for them would take a read back."""
         return True
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture of the scene that sends light, and the camera that saw it. source: its Passes, or a function that loads
-    them: each is needed only for a moment, and they are large; or Drawn. shine: a function that loads Passes of the
-    same picture which have Glossy Color and Glossy Direct in the places of the diffuse ones, and no emission; or None
-    where they can't be had. coarse: whether its picture has a pixel for each texel of the depth maps, however large
-    the first view's is."""
+    """A picture of the scene that sends light, and its camera.
 
-    source: Passes | Drawn | Callable[[], Passes]
+    source: Passes, or a function that loads them, since they are large and needed only for a moment; or GpuPasses.
+    load_specular: a function that loads Passes of the same picture with Glossy Color and Glossy Direct in the fields of
+    the diffuse ones, and no emission; or None where the picture has none. coarse: whether the picture has a pixel for
+    each texel of the depth maps, whatever the first view's resolution."""
+
+    source: Passes | GpuPasses | Callable[[], Passes]
     camera: Camera
-    shine: Callable[[], Passes | None] = lambda: None
+    load_specular: Callable[[], Passes | None] = lambda: None
     coarse: bool = False
 
-    @property
-    def passes(self) -> Passes:
-        """The passes, loaded again each time where they have to be."""
+    def load_passes(self) -> Passes | GpuPasses:
+        """The passes; may open a file."""
         return self.source() if callable(self.source) else self.source
 
 
 @dataclass(eq=False)
 class Gloss:
-    """How the surfaces of the picture shine, rows top first, and what gather_views() finds them to show.
+    """The specular reflectance of the picture's surfaces, rows top first, and the light that gather_views() finds for it.
 
-    color: EEVEE's Glossy Color, the share of the light that the lobe sends back, (H, W) float32 each. roughness: (H,
-    W) float32, as Blender's materials have it, 0 to 1. picture: (H, W, 3) float32, bottom row first: the indirect
-    light that they reflect, to add to the picture, W sr^-1 m^-2; below 0 where the world's goes. None until it is
-    gathered.
+    color: EEVEE's Glossy Color, the albedo of the specular lobe, (H, W) float32 each. roughness: (H, W) float32, 0 to
+    1, as in Blender's materials. picture: (H, W, 3) float32, bottom row first: the specular indirect light, to add to
+    the picture, W sr^-1 m^-2; below 0 where the world's light is covered. None until it is gathered.
     """
 
     color: Triple
@@ -127,13 +127,13 @@ class Gloss:
 
 
 @dataclass(frozen=True)
-class Draws:
-    """Settings of the light between several views.
+class RadiositySettings:
+    """Settings of the method Radiosity: light between several views.
 
-    start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: draws of a base texel whose way is
-    looked along, at most MOST_GROUPS; candidates: emitters weighed for each. bounces: how often the light is passed
-    on, 1 and more. visibility: whether surfaces hide what lies behind them. gathers: of which the picture is the mean.
-    smooth: whether neighbours are averaged. seed, strength: as in Settings. Raises ValueError for anything else."""
+    start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: shadow rays of a base texel, at most
+    MAX_GROUPS; candidates: emitters of which each is chosen. bounces: 1 and more. visibility: whether surfaces block
+    shadow rays. gathers: independent gathers that the picture is the mean of. smooth: whether noise is smoothed. seed,
+    strength: as in PaperSettings. Raises ValueError for anything else."""
 
     start: int
     groups: int = 16
@@ -145,23 +145,25 @@ class Draws:
     gathers: int = 1
     smooth: bool = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _check_start(self.start)
         if min(self.groups, self.candidates, self.bounces, self.gathers) < 1:
             raise ValueError(
                 f"Groups, candidates, bounces and gathers are 1 or more, not {self.groups}, {self.candidates}, "
                 f"{self.bounces}, {self.gathers}"
             )
-        if self.groups > MOST_GROUPS:
-            raise ValueError(f"Groups are at most {MOST_GROUPS}, not {self.groups}")
+        if self.groups > MAX_GROUPS:
+            raise ValueError(f"Groups are at most {MAX_GROUPS}, not {self.groups}")
 
 
 @dataclass(frozen=True)
-class Settings:
-    """start: pixels along the side of a base texel (1, 2 or 4). samples: per texel at the finest level, doubled at
-    each coarser one; 0, or any number not below the size of the region, takes every texel of it. radius: of the
-    region, in texels, 2 to 140. seed: any integer; the same seed gives the same picture. strength: factor on the
-    result. Raises ValueError for anything else."""
+class PaperSettings:
+    """Settings of the method Paper: light between the surfaces of one picture.
+
+    start: pixels along the side of a base texel (1, 2 or 4). samples: of a texel at the finest level, doubled at each
+    coarser one; 0, or any number from the region's texels on, takes all of them. radius: of the region, in texels, 2 to
+    140. seed: any integer; the same seed gives the same picture. strength: factor on the result. Raises ValueError for
+    anything else."""
 
     start: int
     samples: int
@@ -169,14 +171,14 @@ class Settings:
     seed: int
     strength: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _check_start(self.start)
         if self.samples < 0:
             raise ValueError(f"The number of samples must not be negative: {self.samples}")
-        if not 2 <= self.radius <= LARGEST_RADIUS:
-            raise ValueError(f"The radius must be 2 to {LARGEST_RADIUS} texels, not {self.radius}")
+        if not 2 <= self.radius <= MAX_RADIUS:
+            raise ValueError(f"The radius must be 2 to {MAX_RADIUS} texels, not {self.radius}")
 
 
-def _check_start(start):
+def _check_start(start: int) -> None:
     if start not in (1, 2, 4):
         raise ValueError(f"The start resolution must be 1, 2 or 4 pixels a texel, not {start}")

@@ -11,7 +11,6 @@ the main thread builds one at that moment.
 """
 
 import queue
-import sys
 import threading
 import time
 from concurrent.futures import Future
@@ -80,6 +79,16 @@ def later(call):
         _leave(call)
 
 
+class MainThread:
+    """The gather's executor in a window."""
+
+    def run(self, call):
+        return run(call)
+
+    def later(self, call):
+        later(call)
+
+
 def after_render(call):
     """Make a call that returns None when no render is under way: now, or soon."""
     if bpy.app.background or not bpy.app.is_job_running("RENDER"):
@@ -128,7 +137,7 @@ def register():
     global _open
     if not bpy.app.background:
         _open = True
-        gather.device.place = sys.modules[__name__]
+        gather.device.use_executor(MainThread())
         bpy.app.timers.register(_take, persistent=True)
 
 

@@ -37,7 +37,7 @@ class Shot:
     again: relight.Kept = None  # the frame whose light is gathered again, where that is what goes on
     view_scenes: int = 0  # how many the settings ask for
     camera: gather.Camera = None
-    properties: gather.Settings = None
+    properties: gather.PaperSettings = None
     goes_on: bool = False  # whether frames of an animation are averaged
     problem: str = ""
     unticked: bool = False  # by a script, since the render began
@@ -218,7 +218,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         start = time.perf_counter()
         timed, broken = {} if report.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}
-        if isinstance(shot.settings, gather.Draws):
+        if isinstance(shot.settings, gather.RadiositySettings):
             sky = world_light.light(depsgraph) if shot.scene.afterlight.use_world_shadow else None
             gloss = self._gloss(shot, path)
             past = histories.before(shot.scene, shot.layer, shot.settings) if shot.goes_on else None
@@ -227,7 +227,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
                 histories.keep(shot.scene, shot.layer, shot.settings, past)
             picture = {PASS: picture} | ({GLOSSY_PASS: gloss.picture} if gloss else {})
         else:
-            picture = {PASS: gather.gather_indirect(main.passes, shot.camera, shot.settings, **options)}
+            picture = {PASS: gather.gather_indirect(main.load_passes(), shot.camera, shot.settings, **options)}
         for name, count in broken.items():
             self.report(
                 {"WARNING"},

@@ -64,7 +64,7 @@ def _asked_for_animation():
 
 
 def before(scene, layer, settings):
-    """gather.History for a frame of a view layer: that of the frame before, or an empty one. settings: gather.Draws."""
+    """gather.History for a frame of a view layer: that of the frame before, or an empty one. settings: gather.RadiositySettings."""
     found = _known.pop((scene.session_uid, layer), None)
     if found and found.frame == scene.frame_current - scene.frame_step and found.alike == _alike(scene, settings):
         return found.light

@@ -47,7 +47,7 @@ def load(path, layer, window):
 
 
 def shine(path, layer, window):
-    """gather.Passes of a view layer as gather.View.shine wants them, and None where the file lacks a pass."""
+    """gather.Passes of a view layer as gather.View.load_specular() gives them, and None where the file lacks a pass."""
     cut, found = passes.read(path, window), passes.load(path, layer, window)
     try:
         color, direct = (tuple(cut(f"{layer}.{name}.{axis}") for axis in "RGB") for _, name in (COLOR, DIRECT))

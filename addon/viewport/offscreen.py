@@ -15,7 +15,7 @@ from ..scene import passes
 # What is drawn: the passes as gather/interactive.py names them, and as the viewport's shading does. Only the last but
 # one changes with lamps.
 SHADING = {
-    "place": "POSITION",
+    "position": "POSITION",
     "normal": "NORMAL",
     "diffuse_color": "DIFFUSE_COLOR",
     "diffuse_direct": "DIFFUSE_LIGHT",
@@ -39,7 +39,7 @@ class Film:
         self._off = None
 
     def draw(self, stage, view_matrix, window_matrix, drawn, names=ALL):
-        """Draw passes of what `stage` shows, through a camera of these matrices (4 x 4), into `drawn`, gather.Drawn.
+        """Draw passes of what `stage` shows, through a camera of these matrices (4 x 4), into `drawn`, gather.GpuPasses.
         Returns gather.Camera where the places are among them. Within drawing(stage). Raises gather.GpuUnavailable."""
         off, camera = self._ensure(drawn.size), None
         for name in names:
@@ -54,7 +54,7 @@ class Film:
                 do_color_management=False,
             )
             picture = device.Texture(off.texture_color)
-            if name == "place":
+            if name == "position":
                 camera = _behind(camera_of(view_matrix, window_matrix, drawn.size), picture)
             interactive.split(name, picture, camera, drawn)
         return camera
@@ -108,7 +108,7 @@ def camera_of(view_matrix, window_matrix, size):
 def _behind(camera, picture):
     """An orthographic viewport shows what is behind its place as well: a camera far enough back, and as near as can be
     for the precision of depths."""
-    span = interactive.span(picture, camera) if camera.orthographic else None
+    span = interactive.depth_range(picture, camera) if camera.orthographic else None
     if span is None:
         return camera
     least, greatest = span

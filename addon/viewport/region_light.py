@@ -15,8 +15,8 @@ from mathutils import Matrix
 
 from .. import gather, properties
 from ..gather import interactive
-from ..gather.radiosity import start_of
-from ..gather.temporal import REBUILT, STRIDE
+from ..gather.temporal import REBUILT, SEED_STRIDE
+from ..gather.view_layout import start_of
 from ..scene import world_light
 from ..scene.pixel_jitter import radical_inverse
 from . import blend, offscreen, scene_changes
@@ -97,7 +97,7 @@ class Region:
         """Bring the light up to date, or nearer to its end, within what one redraw may take. Returns in how many
         seconds there is more to do, None if there is nothing. Raises gather.GpuUnavailable."""
         now, chosen = time.perf_counter(), _settings(stage)
-        self._wanted = max(REBUILT, chosen.gathers) if isinstance(chosen, gather.Draws) else REBUILT
+        self._wanted = max(REBUILT, chosen.gathers) if isinstance(chosen, gather.RadiositySettings) else REBUILT
         stale = self._look_for_changes(stage)
         if stale is not None:
             self._draft(stage, stale, chosen)
@@ -147,12 +147,12 @@ class Region:
         start = time.perf_counter()
         size = interactive.coarse_size(stage.size)
         if self._drawn is None or self._drawn.size != size:
-            self._drawn, stale = gather.Drawn(size, {}), offscreen.ALL
+            self._drawn, stale = gather.GpuPasses(size, {}), offscreen.ALL
         with offscreen.drawing(stage):
             camera = self.further.film.draw(stage, stage.rv3d.view_matrix, stage.rv3d.window_matrix, self._drawn, stale)
             self._camera = camera or self._camera
             self.further.refresh(stage, AT_ONCE)
-        if isinstance(chosen, gather.Draws):
+        if isinstance(chosen, gather.RadiositySettings):
             chosen = replace(
                 chosen,
                 start=self._start,
@@ -171,13 +171,13 @@ class Region:
 
     def _gather(self, stage, chosen):
         """Once more, as a render does, through another place in the pixels."""
-        drawn = gather.Drawn(stage.size, {})
+        drawn = gather.GpuPasses(stage.size, {})
         with offscreen.drawing(stage):
             camera = self._film.draw(
                 stage, stage.rv3d.view_matrix, _shifted(stage.rv3d.window_matrix, self._gathers, stage.size), drawn
             )
-        chosen = replace(chosen, seed=chosen.seed + STRIDE * self._gathers)
-        if isinstance(chosen, gather.Draws):
+        chosen = replace(chosen, seed=chosen.seed + SEED_STRIDE * self._gathers)
+        if isinstance(chosen, gather.RadiositySettings):
             chosen = replace(chosen, start=start_of(chosen, stage.size))
         self._add(stage, gather.View(drawn, camera), chosen, fresh=self._gathers == 0)
         self._gathers += 1
@@ -189,15 +189,15 @@ class Region:
         found = interactive.indirect(views, stage.size, replace(chosen, strength=1.0), _world(stage), history)
         if fresh:
             self._mean.clear()
-        self._mean.add(found, main.passes.size)
+        self._mean.add(found, main.load_passes().size)
 
 
 def _settings(stage):
-    """gather.Draws or gather.Settings of the scene. What Blender's Denoise node would do in the compositor, smoothing
+    """gather.RadiositySettings or gather.PaperSettings of the scene. What Blender's Denoise node would do in the compositor, smoothing
     does."""
     chosen = properties.light_settings(stage.scene.afterlight, stage.scene.frame_current)
     smoothed = stage.scene.afterlight.denoise != "NONE"
-    return replace(chosen, smooth=smoothed) if isinstance(chosen, gather.Draws) else chosen
+    return replace(chosen, smooth=smoothed) if isinstance(chosen, gather.RadiositySettings) else chosen
 
 
 def _options(stage):

@@ -19,11 +19,11 @@ from . import offscreen, scene_changes
 
 @dataclass(eq=False)
 class Kept:
-    """A view: its (view matrix, window matrix), what was drawn, gather.Drawn and gather.Camera, and the passes that
+    """A view: its (view matrix, window matrix), what was drawn, gather.GpuPasses and gather.Camera, and the passes that
     are to be drawn again."""
 
     matrices: tuple
-    drawn: gather.Drawn
+    drawn: gather.GpuPasses
     camera: gather.Camera = None
     stale: tuple = offscreen.ALL
 
@@ -56,12 +56,12 @@ class Further:
             self._stamps = stamps
             return False
         self._wanted, self._stamps = wanted, stamps
-        self._kept = [Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.Drawn(size, {})) for pair in pairs]
+        self._kept = [Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.GpuPasses(size, {})) for pair in pairs]
         return True
 
     def place(self, stage, drawn, camera):
         """Where no render has placed views yet, do as the scout of a render would (render/views_engine.py), by what
-        the viewport shows: gather.Drawn through gather.Camera. Once for each scene, or again when it has changed where
+        the viewport shows: gather.GpuPasses through gather.Camera. Once for each scene, or again when it has changed where
         there was nothing to light it."""
         scene, settings = stage.scene, stage.scene.afterlight
         if (

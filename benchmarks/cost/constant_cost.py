@@ -224,7 +224,7 @@ def main():
     gpu.init()
     light = import_module(f"{afterlight.__name__}.addon.gather")
     found = rooms(afterlight, POLYGONS, LIGHTS, options.size)
-    settings = light.Settings(start=4, samples=64, radius=16, seed=0, strength=1.0)
+    settings = light.PaperSettings(start=4, samples=64, radius=16, seed=0, strength=1.0)
     measure(light, found, settings, options.rounds)
     command = shlex.join([".venv/bin/python", "-m", "benchmarks.constant_cost", *session.arguments()])
     text = section(found, settings, options.size, bench.machine(), command)

@@ -120,7 +120,7 @@ def run(light, passes, camera, settings, patience=PATIENCE, wall=False):
 
 
 def settings(light, start, samples, radius=RADIUS):
-    return light.Settings(start=start, samples=samples, radius=radius, seed=0, strength=1.0)
+    return light.PaperSettings(start=start, samples=samples, radius=radius, seed=0, strength=1.0)
 
 
 def machine():

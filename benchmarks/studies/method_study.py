@@ -24,7 +24,7 @@ SEEDS = 8
 
 
 def settings(start=1, samples=0, radius=16, seed=0):
-    return light.Settings(start=start, samples=samples, radius=radius, seed=seed, strength=1.0)
+    return light.PaperSettings(start=start, samples=samples, radius=radius, seed=seed, strength=1.0)
 
 
 def base_total(passes, camera, chosen):

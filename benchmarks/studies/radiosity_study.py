@@ -245,7 +245,7 @@ class Case:
     def gather(self, **settings):
         """The picture."""
         return self.light.gather_views(
-            self.views, self.light.Draws(**dict(start=4, bounces=BOUNCES, seed=0) | settings)
+            self.views, self.light.RadiositySettings(**dict(start=4, bounces=BOUNCES, seed=0) | settings)
         )
 
     def seconds(self, **settings):

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bilateral upsampling: how much each of four receivers takes from a coarse texel near it.
+// Bilateral weights of four receivers for a texel near them.
 
 #define FLATNESS_SHARPNESS 16.0
-#define LEAST_WEIGHT 1e-3     // the best of poor taps still counts; a good one outweighs it a thousand times
+#define MIN_WEIGHT 1e-3       // where all taps are poor the best still counts; a good one outweighs it a thousand times
 
-// A tap counts the more, the better it lies in the receiver's plane (height above it, in units of the tap's own size, so
-// that scenes of any scale look alike) and the more it faces the same way.
+// A tap weighs more the closer it lies to the receiver's plane (height above it, relative to the size of the tap, so that
+// the scale of the scene does not matter) and the more its normal agrees.
 vec4 bilateral_weight(vec4 height, vec4 cosine, float area)
 {
   vec4 flatness = 1.0 / (1.0 + FLATNESS_SHARPNESS * height * height / area);
@@ -13,5 +13,5 @@ vec4 bilateral_weight(vec4 height, vec4 cosine, float area)
   likeness *= likeness;
   likeness *= likeness;
   likeness *= likeness;  // cosine to the 8th
-  return flatness * likeness + LEAST_WEIGHT;
+  return flatness * likeness + MIN_WEIGHT;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Composite: from the base's irradiance to full resolution, times the reflectance: albedo / pi. One thread makes four
-// neighbouring pixels and writes their red, green and blue one after the other, as Blender wants a pass.
+// Composite: the base's irradiance upsampled to full resolution, times the reflectance, albedo / pi. One thread makes four
+// neighbouring pixels and writes r g b r g b ..., the layout of Blender's passes.
 
 void main()
 {
   int quad = int(gl_GlobalInvocationID.x);
   int row = int(gl_GlobalInvocationID.y);
-  if (4 * quad >= parameters.frame.x || row >= parameters.frame.y) {
+  if (4 * quad >= frame.size.x || row >= frame.size.y) {
     return;
   }
   ivec2 source = pass_texel(quad, row);
@@ -14,13 +14,13 @@ void main()
   Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
   Quad albedo = quad_of(texelFetch(color_r, source, 0), texelFetch(color_g, source, 0), texelFetch(color_b, source, 0));
   vec4 columns = float(4 * quad) + vec4(0.5, 1.5, 2.5, 3.5);
-  Quad place = view_place(columns, float(row) + 0.5, depth);
+  Quad position = view_position(columns, float(row) + 0.5, depth);
   Quad normal = view_normal(world);
 
-  // The base texels between whose centres the pixels lie; a pixel is interpolated between its own four of them. With one
-  // texel a pixel each lies on the centre of its own.
-  float start = float(parameters.frame.z);
-  ivec2 taps = parameters.frame.z == 4 ? ivec2(3, 2) : parameters.frame.z == 2 ? ivec2(4, 2) : ivec2(4, 1);
+  // Each pixel is interpolated between the four base texels around it; the loop covers those of all four pixels. With one
+  // texel a pixel, each pixel lies on the centre of its own.
+  float start = float(frame.start);
+  ivec2 taps = frame.start == 4 ? ivec2(3, 2) : frame.start == 2 ? ivec2(4, 2) : ivec2(4, 1);
   vec4 across = columns / start - 0.5;
   float up = (float(row) + 0.5) / start - 0.5;
   ivec2 corner = ivec2(floor(vec2(across.x, up)));
@@ -38,8 +38,8 @@ void main()
     }
     vec3 facing = direction(surfel.vector_area);
     vec4 received = texelFetch(total, tap, 0);
-    vec4 height = normal.x * (surfel.place.x - place.x) + normal.y * (surfel.place.y - place.y) +
-                  normal.z * (surfel.place.z - place.z);
+    vec4 height = normal.x * (surfel.position.x - position.x) + normal.y * (surfel.position.y - position.y) +
+                  normal.z * (surfel.position.z - position.z);
     vec4 cosine = normal.x * facing.x + normal.y * facing.y + normal.z * facing.z;
     vec4 weight = linear * bilateral_weight(height, cosine, surfel.area);
     weights += weight;
@@ -50,7 +50,7 @@ void main()
   }
   // Without visibility, surfaces behind one another can cover the hemisphere more than once (F > 1). Dividing by F
   // then keeps the white furnace: no point receives more than pi L.
-  vec4 share = parameters.output_scale.x / PI / max(max(bound, weights), vec4(1e-37));
+  vec4 share = options.strength / PI / max(max(bound, weights), vec4(1e-37));
   vec4 red = share * sum.x * albedo.x, green = share * sum.y * albedo.y, blue = share * sum.z * albedo.z;
   for (int k = 0; k < 4; k++) {
     // Background, and pixels with NaN or infinity: no light.

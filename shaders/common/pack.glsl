@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pack: from EEVEE's passes to the pyramid's base. One thread reads four neighbouring pixels of `start` rows and makes
-// the 4 / start base texels that they fill.
+// Pack: the pyramid's base from EEVEE's passes. One thread reads four neighbouring pixels of `start` rows and makes the
+// 4 / start base texels that they cover.
 
 vec4 keep(bvec4 which, vec4 values)
 {
@@ -9,17 +9,17 @@ vec4 keep(bvec4 which, vec4 values)
 
 void main()
 {
-  int start = parameters.frame.z;
+  int start = frame.start;
   int quad = int(gl_GlobalInvocationID.x);
   int texel_row = int(gl_GlobalInvocationID.y);
-  if (4 * quad >= parameters.frame.x || texel_row >= level_size(0).y) {
+  if (4 * quad >= frame.size.x || texel_row >= level_size(0).y) {
     return;
   }
   vec4 columns = float(4 * quad) + vec4(0.5, 1.5, 2.5, 3.5);
-  // Sums down the rows, one a column of pixels.
+  // Sums over the rows, one for each column of pixels.
   vec4 area = vec4(0.0);
   Quad moment = quad_of(area, area, area), vector_area = moment, power = moment;
-  for (int row = texel_row * start; row < min(texel_row * start + start, parameters.frame.y); row++) {
+  for (int row = texel_row * start; row < min(texel_row * start + start, frame.size.y); row++) {
     ivec2 source = pass_texel(quad, row);
     vec4 depth = texelFetch(depth_pass, source, 0);
     Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
@@ -29,7 +29,7 @@ void main()
         texelFetch(direct_b, source, 0) * texelFetch(color_b, source, 0) + texelFetch(emission_b, source, 0));
     Quad normal = view_normal(world);
     vec4 square = world.x * world.x + world.y * world.y + world.z * world.z;
-    // NaN and infinity in any of them show in the sum.
+    // NaN or infinity in any of them makes the sum NaN or infinite.
     vec4 all_of_it = square + radiance.x + radiance.y + radiance.z;
     bvec4 sound;
     for (int k = 0; k < 4; k++) {
@@ -46,11 +46,11 @@ void main()
     }
 #endif
     vec4 pixel_area = texel_area(columns, float(row) + 0.5, depth, normal);
-    Quad place = view_place(columns, float(row) + 0.5, depth);
+    Quad position = view_position(columns, float(row) + 0.5, depth);
     area += keep(sound, pixel_area);
-    moment.x += keep(sound, pixel_area * place.x);
-    moment.y += keep(sound, pixel_area * place.y);
-    moment.z += keep(sound, pixel_area * place.z);
+    moment.x += keep(sound, pixel_area * position.x);
+    moment.y += keep(sound, pixel_area * position.y);
+    moment.z += keep(sound, pixel_area * position.z);
     vector_area.x += keep(sound, pixel_area * normal.x);
     vector_area.y += keep(sound, pixel_area * normal.y);
     vector_area.z += keep(sound, pixel_area * normal.z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Probe: one texel of a texture, so that reading it back waits for whatever writes that texture.
+// Probe: copies one texel of a texture. Reading the copy back waits for all passes that write the texture.
 
 void main()
 {

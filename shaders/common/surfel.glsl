@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfel: what one texel of the pyramid stands for, and its 128 bits in the texture.
+// Surfel: the surfaces that one texel of the pyramid stands for, and their 128 bits in the texture.
 //
 //   x   depth, 22 bits of its float (14 of mantissa); exponent of the radiance, 8 bits
-//   y   area over that of the texel's footprint at that depth, 5 bits of exponent and 13 of mantissa; where the surfel
-//       lies within its texel, 7 bits an axis
+//   y   area relative to the texel's footprint at that depth, 5 bits of exponent and 13 of mantissa; position within the
+//       texel, 7 bits an axis
 //   z   vector area over area, 11, 11 and 10 bits
 //   w   radiance over 2^exponent, 11, 11 and 10 bits; signed, since a lamp may have negative power
 //
-// docs/method/paper.md says what these steps cost in accuracy.
+// docs/method/paper.md has the error that this quantisation makes.
 
 struct Surfel {
-  vec3 place;         // mean point, view space, m
+  vec3 position;      // mean, view space, m
   float area;         // A, m^2; 0 where there is no surface
   vec3 vector_area;   // sum of A n, m^2
   vec3 radiance;      // mean over the area, W sr^-1 m^-2
@@ -34,9 +34,9 @@ Sums sums_of(float area, vec3 moment, vec3 vector_area, vec3 power)
   return sums;
 }
 
-#define DIRECTION_STEPS vec3(1023.0, 1023.0, 511.0)   // to 1 itself
-#define RADIANCE_STEPS vec3(1024.0, 1024.0, 512.0)    // below 1, in steps of which powers of two are whole numbers
-#define LEAST_AREA 1.490116119384765625e-8  // 2^-26: one pixel's share of the coarsest texel of any frame
+#define DIRECTION_STEPS vec3(1023.0, 1023.0, 511.0)   // 1 is the last step
+#define RADIANCE_STEPS vec3(1024.0, 1024.0, 512.0)    // below 1; powers of two are whole numbers of steps
+#define MIN_AREA 1.490116119384765625e-8  // 2^-26: one pixel's share of the coarsest texel of any frame
 
 uint pack_signed(vec3 v, vec3 steps)
 {
@@ -53,7 +53,7 @@ vec3 unpack_signed(uint bits, vec3 steps)
 // Size of a texel on the image plane.
 vec2 texel_step(int level)
 {
-  return parameters.projection.xy * float(parameters.frame.z << level);
+  return frame.scale * float(frame.start << level);
 }
 
 // Area of a texel's footprint at a depth, m^2.
@@ -68,15 +68,15 @@ uvec4 pack_surfel(Sums sums, ivec2 texel, int level)
   if (!(sums.area > 0.0)) {
     return uvec4(0u);
   }
-  vec3 place = sums.moment / sums.area;
+  vec3 position = sums.moment / sums.area;
   vec3 radiance = sums.power / sums.area;
-  vec2 ray = is_orthographic() ? place.xy : place.xy / -place.z;
-  vec2 within = (ray - parameters.projection.zw) / texel_step(level) - vec2(texel);
+  vec2 ray = is_orthographic() ? position.xy : position.xy / -position.z;
+  vec2 within = (ray - frame.offset) / texel_step(level) - vec2(texel);
   uvec2 offset = uvec2(clamp(round(within * 128.0), 0.0, 127.0));
-  uint depth = (floatBitsToUint(-place.z) + 0x100u) >> 9u;
+  uint depth = (floatBitsToUint(-position.z) + 0x100u) >> 9u;
 
-  float relative = clamp(sums.area / footprint(-place.z, level), LEAST_AREA, 64.0);
-  uint area = min((floatBitsToUint(relative) - floatBitsToUint(LEAST_AREA) + 0x200u) >> 10u, 0x3FFFFu);
+  float relative = clamp(sums.area / footprint(-position.z, level), MIN_AREA, 64.0);
+  uint area = min((floatBitsToUint(relative) - floatBitsToUint(MIN_AREA) + 0x200u) >> 10u, 0x3FFFFu);
 
   // The exponent's power of two lies above the largest channel.
   float largest = max(max(abs(radiance.r), abs(radiance.g)), abs(radiance.b));
@@ -86,15 +86,15 @@ uvec4 pack_surfel(Sums sums, ivec2 texel, int level)
                pack_signed(sums.vector_area / sums.area, DIRECTION_STEPS), pack_signed(mantissa, RADIANCE_STEPS));
 }
 
-// corner: where the texel's lower left corner lies on the image plane; size: the texel's size there.
+// corner: the texel's lower left corner on the image plane; size: of the texel there.
 Surfel unpack_surfel_of(uvec4 bits, vec2 corner, vec2 size)
 {
   Surfel surfel;
   float depth = uintBitsToFloat((bits.x >> 10u) << 9u);
   vec2 within = vec2(float(bits.y & 0x7Fu), float((bits.y >> 7u) & 0x7Fu)) * (1.0 / 128.0);
   vec2 ray = corner + size * within;
-  surfel.place = vec3(is_orthographic() ? ray : ray * depth, -depth);
-  float relative = uintBitsToFloat(((bits.y >> 14u) << 10u) + floatBitsToUint(LEAST_AREA));
+  surfel.position = vec3(is_orthographic() ? ray : ray * depth, -depth);
+  float relative = uintBitsToFloat(((bits.y >> 14u) << 10u) + floatBitsToUint(MIN_AREA));
   surfel.area = depth > 0.0 ? relative * abs(size.x * size.y) * (is_orthographic() ? 1.0 : depth * depth) : 0.0;
   surfel.vector_area = surfel.area * unpack_signed(bits.z, DIRECTION_STEPS);
   surfel.radiance = uintBitsToFloat((bits.x & 0xFFu) << 23u) * unpack_signed(bits.w, RADIANCE_STEPS);
@@ -104,5 +104,5 @@ Surfel unpack_surfel_of(uvec4 bits, vec2 corner, vec2 size)
 Surfel unpack_surfel(uvec4 bits, ivec2 texel, int level)
 {
   vec2 size = texel_step(level);
-  return unpack_surfel_of(bits, parameters.projection.zw + size * vec2(texel), size);
+  return unpack_surfel_of(bits, frame.offset + size * vec2(texel), size);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Merge: coarser levels of the pyramid from a finer one, by sums over 2 x 2, 4 x 4 or 8 x 8 of its texels. Up to three
-// levels at once: the third power costs a thread 64 reads, and a dispatch more would cost longer than those.
+// levels at once: the third takes 64 reads a thread, which cost less than another dispatch.
 
 void main()
 {
-  int finer = parameters.span.x;
-  ivec3 tile = tile_texel(finer + 1, parameters.span.y, int(gl_WorkGroupID.x));
+  int finer = options.finer_level;
+  ivec3 tile = tile_texel(finer + 1, options.last_level, int(gl_WorkGroupID.x));
   ivec2 texel = tile.xy;
   int level = tile.z;
   if (!is_inside(texel, level_size(level))) {
@@ -19,7 +19,7 @@ void main()
       if (is_inside(child, level_size(finer))) {
         Surfel surfel = unpack_surfel(imageLoad(surfels_out, level_origin(finer) + child), child, finer);
         sums.area += surfel.area;
-        sums.moment += surfel.area * surfel.place;
+        sums.moment += surfel.area * surfel.position;
         sums.vector_area += surfel.vector_area;
         sums.power += surfel.area * surfel.radiance;
       }

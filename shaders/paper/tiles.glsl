@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One dispatch for several levels: its work groups are the tiles of level `last`, then those of the next finer one, down
-// to `first`. The coarsest come first because a texel of theirs takes longest.
+// One dispatch for several levels: its work groups are the tiles of level `last`, then of the next finer one, down to
+// `first`. The coarsest come first because their texels take longest.
 
-// The texel of this thread in its level, and that level, from the number of its work group.
+// (x, y, level) of this thread's texel, from the number of its work group.
 ivec3 tile_texel(int first, int last, int group)
 {
   ivec2 tiles = ivec2(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Upsample: what each texel of the base receives in all: what it gathered itself, and every coarser level's light,
-// interpolated between the four texels of that level around it.
+// Upsample: the irradiance of each texel of the base from all levels: its own, and that of every coarser level, interpolated
+// between the four texels of that level around it.
 
 vec4 bilateral(ivec2 texel, Surfel receiver, vec3 normal, int level)
 {
@@ -16,7 +16,7 @@ vec4 bilateral(ivec2 texel, Surfel receiver, vec3 normal, int level)
       Surfel surfel = unpack_surfel(texelFetch(surfels, level_origin(level) + tap, 0), tap, level);
       if (surfel.area > 0.0) {
         vec2 linear = mix(1.0 - blend, blend, vec2(side));
-        float height = dot(normal, surfel.place - receiver.place);
+        float height = dot(normal, surfel.position - receiver.position);
         float cosine = dot(normal, direction(surfel.vector_area));
         float weight = linear.x * linear.y * bilateral_weight(vec4(height), vec4(cosine), surfel.area).x;
         sum += weight * texelFetch(irradiance, level_origin(level) + tap, 0);
@@ -37,7 +37,7 @@ void main()
   Surfel receiver = unpack_surfel(texelFetch(surfels, texel, 0), texel, 0);
   if (receiver.area > 0.0) {
     vec3 normal = direction(receiver.vector_area);
-    for (int level = 1; level <= parameters.span.y; level++) {
+    for (int level = 1; level <= options.last_level; level++) {
       sum += bilateral(texel, receiver, normal, level);
     }
   }

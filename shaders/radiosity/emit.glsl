@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emit: what the blocks of one view's pixels send, a record for each in world space, of four texels:
+// Emit: a record for each block of one view's pixels, in world space, of four texels:
 //
-//   0  place, m; area A, m^2, times the share of it that is this view's
+//   0  position, m; area A, m^2, times this view's share of it
 //   1  mean normal, the shorter the less flat the block is; A
 //   2  radiance of direct light and emission, W sr^-1 m^-2
 //   3  albedo
 //
-// A surface that several views show is shared out between them by the balance heuristic, w_k = A_k^-1 / sum_j A_j^-1 over
-// the views j that see it, A_j being the area of a pixel there: the view that shows it finest counts most.
+// Views that show the same surface share it by the balance heuristic, w_k = A_k^-1 / sum_j A_j^-1 over the views j that
+// see it, with A_j the area of a pixel there: the view with the finest pixels has the largest share.
 
-// Share of a surface that is this view's.
-float own_share(int own, vec3 place, vec3 normal, float depth)
+// This view's share of a surface.
+float own_share(int own, vec3 position, vec3 normal, float depth)
 {
-  float mine = 1.0 / shown_area(own, place, normal, depth), all = mine;
-  vec3 eye = to_eye(own, place);
+  float mine = 1.0 / shown_area(own, position, normal, depth), all = mine;
+  vec3 outgoing = to_camera(own, position);
   for (uint left = all_views(); left != 0u; left &= left - 1u) {
     int view = findLSB(left);
-    vec3 projected = project(view, place);
-    float found = view == own ? 0.0 : depth_at(view, projected);
-    if (found > 0.0 && shows(view, place, normal, eye, projected, found)) {
-      all += 1.0 / shown_area(view, place, normal, projected.z);
+    vec3 projected = project(view, position);
+    float shown = view == own ? 0.0 : depth_at(view, projected);
+    if (shown > 0.0 && shows(view, position, normal, outgoing, projected, shown)) {
+      all += 1.0 / shown_area(view, position, normal, projected.z);
     }
   }
   return mine / all;
@@ -29,17 +29,20 @@ float own_share(int own, vec3 place, vec3 normal, float depth)
 
 void main()
 {
-  int view = parameters.span.x;
-  bool receives = parameters.span.y != 0;
-  ivec4 grid = receives ? views.receivers[view] : views.emitters[view];
+  int view = options.view;
+  bool receives = options.receives != 0;
+  Grid grid = views.cameras[view].emitters;
+  if (receives) {
+    grid = views.cameras[view].receivers;
+  }
   ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-  if (!is_inside(block, grid.yz)) {
+  if (!is_inside(block, grid.size)) {
     return;
   }
-  int side = grid.w;
+  int side = grid.side;
   float area = 0.0, own = 0.0;
-  vec3 place = vec3(0.0), normal = vec3(0.0), power = vec3(0.0), albedo = vec3(0.0);
-  ivec2 end = min(block * side + side, parameters.frame.xy);
+  vec3 position = vec3(0.0), normal = vec3(0.0), power = vec3(0.0), albedo = vec3(0.0);
+  ivec2 end = min(block * side + side, frame.size);
   for (int y = block.y * side; y < end.y; y++) {
     for (int x = block.x * side; x < end.x; x++) {
       ivec2 pixel = ivec2(x, y), source = pass_texel(x >> 2, y);
@@ -59,21 +62,21 @@ void main()
       }
 #endif
       facing = direction(facing);
-      vec3 world = to_world(view, view_place(centre, depth)) + views.eye[view].xyz;
+      vec3 world = to_world(view, view_position(centre, depth)) + views.cameras[view].position;
       float shown = shown_area(view, world, facing, depth);
       float mine = receives ? shown : shown * own_share(view, world, facing, depth);
       area += shown;
       own += mine;
-      place += mine * world;
+      position += mine * world;
       normal += mine * facing;
       power += mine * radiance;
       albedo += mine * color;
     }
   }
-  // The depth map's texels are wider than the pixels that were summed.
-  float scale = 1.0 / float(views.depths.z * views.depths.z), each = own > 0.0 ? 1.0 / own : 0.0;
-  int record = grid.x + block.y * grid.y + block.x;
-  imageStore(records_out, record_texel(record, 0, 4), vec4(place * each, own * scale));
+  // shown_area() is that of a depth map's texel, which is wider than a pixel.
+  float scale = 1.0 / float(views.depth_step * views.depth_step), each = own > 0.0 ? 1.0 / own : 0.0;
+  int record = grid.first + block.y * grid.size.x + block.x;
+  imageStore(records_out, record_texel(record, 0, 4), vec4(position * each, own * scale));
   imageStore(records_out, record_texel(record, 1, 4), vec4(normal * each, area * scale));
   imageStore(records_out, record_texel(record, 2, 4), vec4(power * each, 0.0));
   imageStore(records_out, record_texel(record, 3, 4), vec4(albedo * each, 0.0));

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean: of the pictures that composite has made, one more beside those before. A texel for each pixel, bottom row first.
+// Running mean: one more of the pictures that composite makes, into the mean of those before. A texel for each pixel,
+// bottom row first.
 
 void main()
 {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (!is_inside(pixel, parameters.frame.xy)) {
+  if (!is_inside(pixel, options.size)) {
     return;
   }
   vec3 now;
@@ -13,6 +14,6 @@ void main()
     now[k] = texelFetch(indirect, ivec2(number / 4, pixel.y), 0)[number % 4];
   }
   vec3 before = texelFetch(mean, pixel, 0).rgb;
-  int count = parameters.span.x;
+  int count = options.count;
   imageStore(mean_out, pixel, vec4(count > 1 ? before + (now - before) / float(count) : now, 0.0));
 }

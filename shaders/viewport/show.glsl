@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Show: the light in a picture of any size, over a region of `extent` pixels; between texels it is interpolated. It is added to what is
-// there by the blending.
+// Show: a picture of any size over a region of `extent` pixels, interpolated between its texels. The blend mode adds it to
+// the region.
 
 void main()
 {
   ivec2 size = textureSize(light, 0);
-  vec2 place = gl_FragCoord.xy / extent * vec2(size) - 0.5;
-  ivec2 corner = ivec2(floor(place));
-  vec2 share = place - vec2(corner);
+  vec2 position = gl_FragCoord.xy / extent * vec2(size) - 0.5;
+  ivec2 corner = ivec2(floor(position));
+  vec2 share = position - vec2(corner);
   vec3 sum = vec3(0.0);
   for (int k = 0; k < 4; k++) {
     ivec2 tap = ivec2(k & 1, k >> 1);

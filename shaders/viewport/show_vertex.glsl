@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Show: one triangle over the whole region.
+// Show: one triangle that covers the region.
 
 void main()
 {

@@ -187,7 +187,7 @@ def test_whatever_is_rendered_blocks(fresh, light, blocker):
 def table(afterlight, light, box, **changes):
     scene, passes, camera = box
     direct = np.stack(passes.diffuse_direct, -1)
-    chosen = light.Settings(start=1, samples=16, radius=4, seed=0, strength=1.0)
+    chosen = light.PaperSettings(start=1, samples=16, radius=4, seed=0, strength=1.0)
     truth = np.random.default_rng(0).uniform(0.1, 1, (2, *direct.shape)).astype(np.float32)
     given = (
         dict(
@@ -221,7 +221,7 @@ def test_the_causes_add_up_to_the_total(afterlight, light, box):
 
 def test_a_cause_that_is_absent_shows_nothing(afterlight, light, box):
     """An empty box without noise, and lit alike by both: only the hierarchy and what the reference adds are left."""
-    exhaustive = light.Settings(start=1, samples=0, radius=4, seed=0, strength=1.0)
+    exhaustive = light.PaperSettings(start=1, samples=0, radius=4, seed=0, strength=1.0)
     _, named = table(afterlight, light, box, settings=exhaustive)
     for name in ("sampling noise", "missing visibility", "EEVEE's direct light", "noise of the visibility rays"):
         assert named[name]["share"] < 1e-6, name

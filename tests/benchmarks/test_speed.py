@@ -69,7 +69,7 @@ def test_only_the_gather_loses_its_fetches():
 
 def test_a_tiny_frame_counted_by_hand(light):
     """4 x 4 pixels make 2 x 2 texels and 1; with radius 2 each of the four sees the three others, the one sees none."""
-    chosen = light.Settings(start=2, samples=0, radius=2, seed=0, strength=1.0)
+    chosen = light.PaperSettings(start=2, samples=0, radius=2, seed=0, strength=1.0)
     counted = {
         work.stage: (work.read, work.written, work.fetches, work.samples)
         for work in ceilings.work(light.pyramid, 4, 4, chosen)

@@ -61,9 +61,9 @@ def test_no_noise_where_the_seed_is_greyed(light):
     passes, camera = random_frame(light, 48, 32), camera_for(light, 48, 32)
     for samples, radius, exact in ((256, 8, True), (32, 8, False), (0, 16, True)):
         pictures = [
-            light.gather_indirect(passes, camera, light.Settings(1, samples, radius, seed, 1.0)) for seed in (1, 2)
+            light.gather_indirect(passes, camera, light.PaperSettings(1, samples, radius, seed, 1.0)) for seed in (1, 2)
         ]
-        assert light.is_exact(light.Settings(1, samples, radius, 0, 1.0)) == exact == np.array_equal(*pictures)
+        assert light.is_exact(light.PaperSettings(1, samples, radius, 0, 1.0)) == exact == np.array_equal(*pictures)
 
 
 def test_the_header_has_presets_menu_and_help(scene, addon):
@@ -122,7 +122,7 @@ def test_memory_is_what_the_textures_take(addon, monkeypatch, start, size, radiu
     plane = np.ones((height, width), np.float32)
     passes = light.Passes(plane, *[(plane,) * 3] * 4)
     camera = light.Camera(np.eye(3), np.ones(2), np.zeros(2))
-    settings = light.Settings(start, 64, radius, 0, 1.0)
+    settings = light.PaperSettings(start, 64, radius, 0, 1.0)
     light.gather_indirect(passes, camera, settings)
     assert light.gpu_bytes(width, height, settings) == most and held == 0
 

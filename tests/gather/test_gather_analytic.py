@@ -68,7 +68,7 @@ def test_texel_areas_add_up_to_the_plane(light, tilt, turn, shift, distance, ort
     )
     normal = np.array([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
     passes = plane_passes(light, camera, width, height, normal, distance)
-    chosen = light.Settings(**EXHAUSTIVE | {"start": start}, radius=8)
+    chosen = light.PaperSettings(**EXHAUSTIVE | {"start": start}, radius=8)
     base = fixtures.level_arrays(fixtures.pyramid_of(light, passes, camera, chosen), camera, start)[0]
     true = polygon_area(camera, width, height, normal, distance)
     assert base.area.sum() == pytest.approx(true, rel=1e-4)
@@ -82,7 +82,7 @@ def test_merging_keeps_area_power_and_moment(light):
     passes = fixtures.random_frame(light, 37, 23)
     camera = fixtures.camera_for(light, 37, 23)
     levels = fixtures.level_arrays(
-        fixtures.pyramid_of(light, passes, camera, light.Settings(**EXHAUSTIVE, radius=4)), camera, 1
+        fixtures.pyramid_of(light, passes, camera, light.PaperSettings(**EXHAUSTIVE, radius=4)), camera, 1
     )
 
     def sums(level):
@@ -170,7 +170,7 @@ def test_form_factor_of_a_square(light, facing, normal, point, orthographic):
     )
     receiver = patch.mean(0)
     assert ((polygon - receiver) @ facing > 0).all() and ((receiver - polygon) @ normal > 0).all()
-    chosen = light.Settings(**EXHAUSTIVE, radius=120)
+    chosen = light.PaperSettings(**EXHAUSTIVE, radius=120)
     pyramid = fixtures.pyramid_of(light, passes, camera, chosen)
     assert len(pyramid.boxes) == 1
     result = np.asarray(light.gather(pyramid, chosen).read())[0, 3]
@@ -194,7 +194,7 @@ def test_form_factor_between_opposite_squares(light):
         count,
         [((0, 0, count, count), toward, -2 * toward), ((count, 0, count, count), away, -toward)],
     )
-    chosen = light.Settings(**EXHAUSTIVE, radius=100)
+    chosen = light.PaperSettings(**EXHAUSTIVE, radius=100)
     result = np.asarray(light.gather(fixtures.pyramid_of(light, passes, camera, chosen), chosen).read())[..., 3]
     places = (
         lower[0]
@@ -223,7 +223,7 @@ def test_form_factor_never_exceeds_one(light, distance):
             ((1, 0, 1, 1), -path, np.array([side / 2, 0, -5.0 - distance])),
         ],
     )
-    chosen = light.Settings(**EXHAUSTIVE, radius=4)
+    chosen = light.PaperSettings(**EXHAUSTIVE, radius=4)
     pyramid = fixtures.pyramid_of(light, passes, camera, chosen)
     form = np.asarray(light.gather(pyramid, chosen).read())[0, 0, 3]
     area = side**2 / max(abs(path[2]), reference.COSINE_FLOOR)
@@ -232,7 +232,7 @@ def test_form_factor_never_exceeds_one(light, distance):
 
 
 def base_of(light, passes, camera):
-    chosen = light.Settings(**EXHAUSTIVE, radius=8)
+    chosen = light.PaperSettings(**EXHAUSTIVE, radius=8)
     return fixtures.level_arrays(fixtures.pyramid_of(light, passes, camera, chosen), camera, 1)[0]
 
 

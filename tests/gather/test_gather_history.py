@@ -22,7 +22,7 @@ def camera(light, step=0.0, across=None):
 
 def base_of(light, view):
     """(Pyramid, reference.Level) of a view."""
-    settings = light.Draws(start=START)
+    settings = light.RadiositySettings(start=START)
     base = light.pack(light.upload(view.passes), view.passes, view.camera, settings)
     return base, fixtures.level_arrays(base, view.camera, START)[0]
 
@@ -40,7 +40,7 @@ def noise(seed, shape=(SIZE[1] // START, SIZE[0] // START)):
 
 
 def known_by(light, past, view, base):
-    table = light.radiosity.view_table([view], SIZE, light.Draws(start=START))
+    table = light.radiosity.view_table([view], SIZE, light.RadiositySettings(start=START))
     return light.device.read(light.temporal.reproject(past, base, view.camera, view.passes.motion, table))
 
 
@@ -114,7 +114,7 @@ def shot(light, step, radiance=rooms.lamp, solids=()):
 
 
 def draws(light, seed=0, **changes):
-    return light.Draws(**dict(start=START, bounces=1, groups=4, candidates=4, visibility=False, seed=seed) | changes)
+    return light.RadiositySettings(**dict(start=START, bounces=1, groups=4, candidates=4, visibility=False, seed=seed) | changes)
 
 
 def lit(history):

@@ -46,9 +46,9 @@ def picture(light, image):
 
 
 def drawn_from(light, live, frame, camera):
-    """light.Drawn of a frame, as if EEVEE had drawn its passes."""
-    drawn = light.Drawn(frame.size, {})
-    live.split("place", picture(light, places(frame, camera)), camera, drawn)
+    """light.GpuPasses of a frame, as if EEVEE had drawn its passes."""
+    drawn = light.GpuPasses(frame.size, {})
+    live.split("position", picture(light, places(frame, camera)), camera, drawn)
     for name in ("normal", "diffuse_color", "diffuse_direct", "emission"):
         live.split(name, picture(light, np.stack(getattr(frame, name), -1)[::-1]), None, drawn)
     return drawn
@@ -97,12 +97,12 @@ def test_one_gather_is_that_of_a_render(light, live):
     """The same numbers by the same stages, wherever the passes come from; and so for the method Paper."""
     size = 64, 48
     views = room(light, size)
-    drawn = [replace(view, source=light.Drawn(size, light.upload(view.passes))) for view in views]
+    drawn = [replace(view, source=light.GpuPasses(size, light.upload(view.passes))) for view in views]
     for chosen in (
-        light.Draws(start=1, bounces=2, groups=4),
-        light.Settings(start=2, samples=0, radius=8, seed=0, strength=1.0),
+        light.RadiositySettings(start=1, bounces=2, groups=4),
+        light.PaperSettings(start=2, samples=0, radius=8, seed=0, strength=1.0),
     ):
-        if isinstance(chosen, light.Draws):
+        if isinstance(chosen, light.RadiositySettings):
             exact = light.gather_views(views, chosen)
         else:
             exact = light.gather_indirect(views[0].passes, views[0].camera, chosen)
@@ -113,7 +113,7 @@ def test_one_gather_is_that_of_a_render(light, live):
 def test_small_views_light_as_large_ones_do(light, live, monkeypatch):
     """Views with a pixel for each texel of the depth maps, beside a main view with 3 x 3; and all of them small."""
     monkeypatch.setattr(light.radiosity, "DEPTHS_ACROSS", 48)
-    size, chosen = (144, 108), light.Draws(start=2, bounces=3, groups=16)
+    size, chosen = (144, 108), light.RadiositySettings(start=2, bounces=3, groups=16)
     large = room(light, size)
     small = live.coarse_size(size)
     assert small == (48, 36)
@@ -129,7 +129,7 @@ def test_small_views_light_as_large_ones_do(light, live, monkeypatch):
 
 
 def test_history_calms_what_is_shown(light, live):
-    size, chosen = (64, 48), light.Draws(start=2, bounces=1, groups=1, smooth=False)
+    size, chosen = (64, 48), light.RadiositySettings(start=2, bounces=1, groups=1, smooth=False)
     views = room(light, size)
 
     def gathered(history, seed):

@@ -11,7 +11,7 @@ DEFAULT_RADIUS = 16
 
 
 def settings(light, **changes):
-    return light.Settings(**dict(start=1, samples=0, radius=DEFAULT_RADIUS, seed=0, strength=1.0) | changes)
+    return light.PaperSettings(**dict(start=1, samples=0, radius=DEFAULT_RADIUS, seed=0, strength=1.0) | changes)
 
 
 def base_total(light, passes, camera, chosen):

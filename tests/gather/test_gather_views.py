@@ -17,7 +17,7 @@ SURFACE = np.s_[..., :3]
 
 
 def draws(light, **changes):
-    return light.Draws(**dict(start=2, bounces=1) | changes)
+    return light.RadiositySettings(**dict(start=2, bounces=1) | changes)
 
 
 @dataclass
@@ -818,10 +818,10 @@ def test_as_many_views_as_there_can_be(light):
 def test_the_most_draws_lose_no_light(light):
     """Mesa's software driver ends a shader's loops after 65,535 rounds in all, and the rest of the light is missing."""
     views = rooms.box_views(light) + rooms.box_views(light, eye=(-0.4, 0.2, 0.3), towards=rooms.AXES[:4])
-    few, most = (light.gather_views(views, draws(light, groups=groups)).mean() for groups in (16, light.MOST_GROUPS))
+    few, most = (light.gather_views(views, draws(light, groups=groups)).mean() for groups in (16, light.MAX_GROUPS))
     assert most == pytest.approx(few, rel=0.015)
     with pytest.raises(ValueError, match="at most"):
-        draws(light, groups=light.MOST_GROUPS + 1)
+        draws(light, groups=light.MAX_GROUPS + 1)
 
 
 def test_views_of_nothing(light):
