@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import gather
 from ..host import main_thread
-from . import materials, passes
+from . import exr, materials, passes
 
 AOV = "Roughness"
 UNKNOWN = 0.5  # where nodes decide it that are not read, and of surfaces without a material: Blender's own default
@@ -32,9 +32,9 @@ def has_aov(layer):
 
 
 def load(path, layer, window):
-    """gather.Gloss of a view layer from a file that passes.save() wrote, and None where it lacks a pass. path, layer,
-    window, Problem: as passes.load() has them."""
-    cut = passes.read(path, window)
+    """gather.Gloss of a view layer from a file that frame_store.save() wrote, and None where it lacks a pass. path,
+    layer, window, Problem: as passes.load() has them."""
+    cut = exr.read(path, window)
     try:
         color = tuple(cut(f"{layer}.{COLOR[1]}.{axis}") for axis in "RGB")
         try:
@@ -48,7 +48,7 @@ def load(path, layer, window):
 
 def shine(path, layer, window):
     """gather.Passes of a view layer as gather.View.shine wants them, and None where the file lacks a pass."""
-    cut, found = passes.read(path, window), passes.load(path, layer, window)
+    cut, found = exr.read(path, window), passes.load(path, layer, window)
     try:
         color, direct = (tuple(cut(f"{layer}.{name}.{axis}") for axis in "RGB") for _, name in (COLOR, DIRECT))
     except KeyError:

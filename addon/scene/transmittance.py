@@ -14,7 +14,7 @@ there is taken from what is seen nearby at a like distance, and then from furthe
 
 import numpy as np
 
-from . import media, passes, roughness
+from . import exr, media, roughness
 
 VOLUME = "eevee.use_pass_volume_direct", "Volume Direct"
 TRANSPARENT = "eevee.use_pass_transparent", "Transparent"
@@ -40,8 +40,9 @@ def needed(scene):
 
 def load(path, layer, window, cell, blurred):
     """(H, W, 3) float32 in 0..1, rows bottom first as the light is handed back: through() of a view layer from a file
-    that passes.save() wrote; None where it lacks a pass. path, layer, window, Problem: as passes.load() has them."""
-    cut = passes.read(path, window)
+    that frame_store.save() wrote; None where it lacks a pass. path, layer, window, Problem: as passes.load() has
+    them."""
+    cut = exr.read(path, window)
 
     def color(name):
         return _finite(np.stack([cut(f"{layer}.{name}.{axis}") for axis in "RGB"], -1))
