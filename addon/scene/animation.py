@@ -95,7 +95,7 @@ HANDLERS = (
 )
 
 
-def moving(scene, depsgraph):
+def moving(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
     """The name of something that may look otherwise in another frame of `scene`; empty where there is nothing.
 
     depsgraph: one in which all that is looked at is evaluated."""

@@ -1,35 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of a frame that is rendered, and the cameras that see it, as the gather takes them."""
 
+import bpy
 import numpy as np
 
 from .. import gather
 from . import pixel_jitter
 
+Window = tuple[int, int, int, int]  # x, y from the bottom left; width, height, in pixels
+Size = tuple[int, int]  # width, height
 
-def window(scene):
+
+def window(scene: bpy.types.Scene) -> tuple[Window, Size]:
     """(x, y, width, height): the pixels that are rendered, counted from the bottom left of the full frame, and the
     full frame's (width, height). Rounded as Blender rounds."""
     render = scene.render
-    full = tuple(
+    width, height = (
         max(1, int(size * render.resolution_percentage / 100)) for size in (render.resolution_x, render.resolution_y)
     )
     if not render.use_border:
-        return (0, 0, *full), full
+        return (0, 0, width, height), (width, height)
 
     def pixel(share, size):
         return int(np.float32(share) * np.float32(size))
 
-    x, y = pixel(render.border_min_x, full[0]), pixel(render.border_min_y, full[1])
-    return (x, y, pixel(render.border_max_x, full[0]) - x, pixel(render.border_max_y, full[1]) - y), full
+    x, y = pixel(render.border_min_x, width), pixel(render.border_min_y, height)
+    right, top = pixel(render.border_max_x, width), pixel(render.border_max_y, height)
+    return (x, y, right - x, top - y), (width, height)
 
 
-def first_layer(scene):
+def first_layer(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
     """The first view layer that is rendered."""
     return next(layer for layer in scene.view_layers if layer.use)
 
 
-def camera(evaluated, depsgraph, scene, layer=None):
+def camera(
+    evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene, layer: str | None = None
+) -> gather.Camera:
     """gather.Camera of an evaluated camera object, for the part of `scene`'s frame that is rendered. layer: name of
     the view layer, by default the first that is rendered.
 
@@ -43,7 +50,15 @@ def camera(evaluated, depsgraph, scene, layer=None):
     )
 
 
-def camera_at(matrix, lens, depsgraph, corner, full, aspect, middle=(0.0, 0.0)):
+def camera_at(
+    matrix,
+    lens: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    corner: tuple[int, int],
+    full: Size,
+    aspect: tuple[float, float],
+    middle: tuple[float, float] = (0.0, 0.0),
+) -> gather.Camera:
     """gather.Camera at `matrix` with the lens of the camera object `lens`, for the part of a frame of `full` pixels
     (width, height) that begins at `corner`. middle: where in its pixels the depth was sampled, as pixel_jitter.py has
     it."""
@@ -61,7 +76,9 @@ def camera_at(matrix, lens, depsgraph, corner, full, aspect, middle=(0.0, 0.0)):
     )
 
 
-def camera_through(projection, rotation, position, corner, full, *, orthographic):
+def camera_through(
+    projection: np.ndarray, rotation: np.ndarray, position, corner, full: Size, *, orthographic: bool
+) -> gather.Camera:
     """gather.Camera of a projection matrix (4, 4) float64. corner: of the picture, within the frame of `full` pixels,
     in pixels."""
     # ndc = (P00 q + P02 * -1) / 1 in perspective, P00 q + P03 in orthographic; ndc = 2 pixel / size - 1.
@@ -76,7 +93,7 @@ def camera_through(projection, rotation, position, corner, full, *, orthographic
     )
 
 
-def positions(frame, seen, flat):
+def positions(frame: gather.Passes, seen: gather.Camera, flat: np.ndarray) -> np.ndarray:
     """(N, 3) float64, in the world: where the pixels of gather.Passes with these flat indices lie, through
     gather.Camera."""
     width, height = frame.size
@@ -87,7 +104,7 @@ def positions(frame, seen, flat):
     return local @ seen.rotation + seen.position  # the inverse of the rotation is its transpose
 
 
-def project(places, size, seen):
+def project(places: np.ndarray, size: Size, seen: gather.Camera) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(rows, columns, depths) of world positions (N, 3) in a frame of `size` (width, height) seen through
     gather.Camera; rows and columns are -1 where a position is not in the frame."""
     width, height = size

@@ -2,6 +2,7 @@
 """The files in which finished passes lie (frame_store.py): read as arrays in the file's own memory."""
 
 import mmap
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from ..host import temp_files
 from ..host.report import Problem
 
 
-def read(path, window):
+def read(path: str, window: tuple[int, int, int, int]) -> Callable[[str], np.ndarray]:
     """A function from the name of a channel ("ViewLayer.Normal.X") of a file that frame_store.save() wrote to its (H,
     W) float32, rows top first, or KeyError. window, Problem: as load() has them."""
     channels = _channels(path)
@@ -25,9 +26,15 @@ def read(path, window):
     return cut
 
 
-def contents(path, layers):
+def triple(cut: Callable[[str], np.ndarray], name: str, axes: str = "RGB") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Three channels of a pass ("ViewLayer.Normal"), cut() as read() gives it."""
+    first, second, third = (cut(f"{name}.{axis}") for axis in axes)
+    return first, second, third
+
+
+def contents(path: str, layers: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
     """{view layer: [(pass, its channels in Blender's order)]} of a file that frame_store.save() wrote."""
-    found = {}
+    found: dict[str, dict[str, list[str]]] = {}
     for name in _channels(path):
         of, kind, channel = ("", *name.rsplit(".", 2))[-3:]  # names of passes have no dots: Blender replaces them
         if of in layers:  # the file holds the compositor's picture as well
@@ -98,6 +105,6 @@ def _mapped(path, header):
     return {channel.name: planes[:, index] for index, channel in enumerate(channels)}
 
 
-def one_line(error):
+def one_line(error: BaseException) -> str:
     """The text of an error without its line breaks."""
     return " ".join(str(error).split())

@@ -11,6 +11,7 @@ A scene's passes always go into the same file, so that its next frame takes no m
 """
 
 import os
+from collections.abc import Collection, Hashable
 
 import bpy
 
@@ -18,10 +19,10 @@ from ..host import main_thread, put_back, temp_files
 from ..host.report import Problem
 from .exr import one_line
 
-_holders = {}  # {path: holders}; global, since frames are kept from one render to the next
+_holders: dict[str, set[Hashable]] = {}  # {path: holders}; global, since frames are kept from one render to the next
 
 
-def save(scene):
+def save(scene: bpy.types.Scene) -> str:
     """Write the finished passes of `scene` to a file in our temporary folder and return its path.
 
     Blender hands the pixels of a render to Python in no other way: a multilayer EXR, uncompressed, takes a tenth of
@@ -34,7 +35,9 @@ def save(scene):
     # Blender takes the format from the scene whose passes it writes, and lets no copy be given.
     settings = main_thread.run(lambda: _to_multilayer_exr(scene.render))
     try:
-        render_result().save_render(path, scene=scene)
+        if (image := render_result()) is None:
+            raise RuntimeError("it does not have any image data")
+        image.save_render(path, scene=scene)
     except (RuntimeError, OSError) as error:
         discard(path)
         if "does not have any image data" in str(error):
@@ -50,7 +53,7 @@ def save(scene):
     return path
 
 
-def hold(holder, paths):
+def hold(holder: Hashable, paths: Collection[str]) -> None:
     """Let `holder` (anything hashable) need these files, and no others any more. Files that nobody needs go."""
     for path in paths:
         _holders.setdefault(path, set()).add(holder)
@@ -60,18 +63,18 @@ def hold(holder, paths):
             discard(path)
 
 
-def release(holder):
+def release(holder: Hashable) -> None:
     """`holder` needs no file any more."""
     hold(holder, ())
 
 
-def discard(path):
+def discard(path: str) -> None:
     """Remove a file that save() wrote, whoever holds it; no error where it is gone."""
     _holders.pop(path, None)
     temp_files.remove(path)
 
 
-def size(path):
+def size(path: str) -> int:
     """Bytes of a file that save() wrote, 0 where it is gone."""
     try:
         return os.path.getsize(path)
@@ -79,7 +82,7 @@ def size(path):
         return 0
 
 
-def render_result():
+def render_result() -> bpy.types.Image | None:
     """Blender's image that stands for finished renders, or None: `blender -b` has none before its first frame."""
     return next((image for image in bpy.data.images if image.type == "RENDER_RESULT"), None)
 

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """EEVEE's passes: which the gather reads, how a view layer is told to render them, and out of a file into arrays."""
 
+from typing import Any
+
+import bpy
+
 from .. import gather
 from ..host.report import Problem
 from . import exr, needs
@@ -17,23 +21,23 @@ PASSES = (
 MOTION = ("motion", "use_pass_vector", "Vector", "XY")
 
 
-def needed(settings):
+def needed(settings) -> tuple[tuple[str, str, str, str], ...]:
     """Of PASSES and MOTION, what a scene with these settings needs."""
     return (*PASSES, MOTION) if needs.averages_frames(settings) else PASSES
 
 
-def is_on(layer, switch):
+def is_on(layer: bpy.types.ViewLayer, switch: str) -> bool:
     """Whether a view layer renders a pass. switch: the path of a property from the view layer."""
     return layer.path_resolve(switch)
 
 
-def turn(layer, switch, on):
+def turn(layer: bpy.types.ViewLayer, switch: str, on: bool) -> None:
     """Let a view layer render a pass, or not. switch: as is_on() has it."""
     owner, _, name = switch.rpartition(".")
     setattr(layer.path_resolve(owner) if owner else layer, name, on)
 
 
-def load(path, layer, window, step=1):
+def load(path: str, layer: str, window: tuple[int, int, int, int], step: int = 1) -> gather.Passes:
     """The passes of one view layer from a file that save() wrote. step: frames from the one before to this.
 
     window: (x, y, width, height) in pixels, from the bottom left: the part of the full frame that is rendered. A
@@ -43,7 +47,9 @@ def load(path, layer, window, step=1):
     """
     cut = exr.read(path, window)
     try:
-        found = {field: tuple(cut(f"{layer}.{name}.{axis}") for axis in axes) for field, _, name, axes in PASSES}
+        found: dict[str, Any] = {
+            field: tuple(cut(f"{layer}.{name}.{axis}") for axis in axes) for field, _, name, axes in PASSES
+        }
     except KeyError as error:
         raise Problem(
             "The render has no pass {}. Press Repair in the Indirect Light panel, then render again",

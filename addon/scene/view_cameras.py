@@ -5,9 +5,11 @@ view_scenes.py."""
 from dataclasses import dataclass
 from math import radians
 
+import bpy
 import numpy as np
 from mathutils import Matrix
 
+from .. import gather
 from ..host.assign import assign
 from . import cameras, pixel_jitter
 
@@ -27,22 +29,23 @@ class Lens:
     orthographic: bool = False
 
 
-def lens_of(source, depsgraph, scene):
+def lens_of(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> Lens:
     """Lens of an evaluated camera of the user's, as if the view were its whole frame, and that as high as it is wide:
     the side that is shorter sees as far as the other."""
-    size = np.array(cameras.window(scene)[0][2:])
-    seen = cameras.camera_at(source.matrix_world, source, depsgraph, (0, 0), size, (1.0, 1.0))
+    *_, width, height = cameras.window(scene)[0]
+    size = np.array((width, height))
+    seen = cameras.camera_at(source.matrix_world, source, depsgraph, (0, 0), (width, height), (1.0, 1.0))
     pixel = (seen.scale * size).max() / size
     axis = -(seen.offset + seen.scale * size / 2) / pixel
     return Lens(tuple(pixel), source.data.clip_start, source.data.clip_end, tuple(axis), seen.orthographic)
 
 
-def wide_lens(scene, near, far):
+def wide_lens(scene: bpy.types.Scene, near: float, far: float) -> Lens:
     """Lens of an automatic view."""
     return Lens(tuple(2 * HALF_FIELD / np.array(cameras.window(scene)[0][2:])), near, far)
 
 
-def pose(view, scene, matrix, lens):
+def pose(view: bpy.types.Scene, scene: bpy.types.Scene, matrix, lens: Lens) -> None:
     """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
 
     Blender renders it at the scene's resolution and, where that has one, within its render border. The camera is made
@@ -79,7 +82,7 @@ def pose(view, scene, matrix, lens):
     assign(view.view_layers[0], "use", True)
 
 
-def window_matrix(lens, scene):
+def window_matrix(lens: Lens, scene: bpy.types.Scene) -> np.ndarray:
     """(4, 4) float64: the projection of a lens of `scene`."""
     size, pixel = np.array(cameras.window(scene)[0][2:], float), np.array(lens.pixel)
     low, high = ((side * size / 2 - lens.centre) * pixel for side in (-1, 1))
@@ -95,7 +98,7 @@ def window_matrix(lens, scene):
     return found
 
 
-def shown(view, scene):
+def shown(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
     """All that decides what a view sees of a still scene."""
     camera, data = view.camera, view.camera.data
     return (
@@ -111,7 +114,7 @@ def shown(view, scene):
     )
 
 
-def camera(view, depsgraph, scene):
+def camera(view: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> gather.Camera:
     """gather.Camera of a view that is rendered together with `scene`. Its pose is what pose() set: nothing animates
     it, so that no depsgraph need have heard of it."""
     place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)

@@ -3,6 +3,7 @@
 before them. EEVEE keeps no more of a world than its mean and the way it leans (the first order of spherical
 harmonics)."""
 
+import bpy
 import numpy as np
 
 from ..gather import images
@@ -11,7 +12,7 @@ from . import materials
 ROWS = 512  # that a picture of the surroundings is read as, and twice as many columns
 
 
-def light(depsgraph, known):
+def light(depsgraph: bpy.types.Depsgraph, known: dict) -> np.ndarray | None:
     """(4, 3), as gather.gather_views() wants it, of the world of a depsgraph's view layer: one of a single colour, or
     of a picture all around. None where there is no light, or where other nodes decide it.
 
@@ -47,7 +48,7 @@ def _of_image(sky, sun_threshold, known):
     return np.concatenate([mean, sky.to_world @ lean])
 
 
-def harmonics(radiance):
+def harmonics(radiance: np.ndarray) -> np.ndarray:
     """(4, 3) float64: by how much surroundings light a white surface with normal n, found[0] + n @ found[1:], as
     radiance.
 
