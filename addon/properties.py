@@ -253,7 +253,7 @@ PARAMETERS = (
 
 
 def light_settings(settings, frame, goes_on=False):
-    """The user's settings as the algorithm takes them: gather.PaperSettings of the method Paper, gather.RadiositySettings of Radiosity.
+    """The user's settings as the algorithm takes them: gather.PaperSettings or gather.RadiositySettings, by the method.
     `frame` is the frame number, for an animated seed, as frames need whose average goes on from one to the next."""
     common = {
         "start": START.get(settings.start, START["HALF"]),  # a newer version's file may hold others

@@ -7,8 +7,8 @@ import bpy
 
 from .. import properties
 from ..compositor import setup
-from ..host import render_lock, roles
-from ..render import relight
+from ..host import engines, render_lock, roles
+from ..scene import needs
 from ..translations import say
 from . import fixes
 
@@ -65,7 +65,7 @@ def findings(scene):
                 fatal=False,
             )
         )
-    if setup.wants_gloss(scene) and holds_reflections(scene):
+    if needs.glossy_light(scene) and holds_reflections(scene):
         found.append(
             Finding(
                 say(
@@ -106,7 +106,7 @@ def holds_reflections(scene):
 
 
 def _of_engine(scene):
-    if scene.render.engine != "BLENDER_EEVEE" and not relight.is_replayed(scene):
+    if scene.render.engine not in (engines.EEVEE, engines.REPLAY):
         engine = scene.render.engine.removeprefix("BLENDER_").title()
         yield Finding(
             say(

@@ -174,6 +174,7 @@ def dispatch(
     name: str,
     textures: dict[str, Texture],
     groups: tuple[int, int],
+    /,
     *,
     frame: np.ndarray | None = None,
     views: np.ndarray | None = None,
@@ -207,9 +208,9 @@ def _to_settle(target: Texture) -> None:
 
 
 def settle() -> None:
-    """Wait for all that has been dispatched, sent and cleared. Blender's windows have a GPU context each, and unfinished
-    work of one may be invisible to another: an executor that takes turns with them calls this at the end of its
-    turn."""
+    """Wait for all that has been dispatched, sent and cleared. Blender's windows have a GPU context each, and the
+    unfinished work of one may be invisible to another: an executor that takes turns with them calls this at the end of
+    its turn."""
     global _unsettled
     target, _unsettled = _unsettled, None
     if target is not None:
@@ -244,7 +245,7 @@ def band(name: str) -> float:
 
 
 @on_gpu
-def run_band(name: str, samples: int, textures: dict[str, Texture], groups: tuple[int, int], **named: Any) -> None:
+def run_band(name: str, samples: int, textures: dict[str, Texture], groups: tuple[int, int], /, **named: Any) -> None:
     """dispatch() of this many samples, and a wait for it; band() then knows how fast this GPU is."""
     start = time.perf_counter()
     dispatch(name, textures, groups, **named)

@@ -13,8 +13,8 @@ from .shader_interface import SQUARE, SURFACE_CHANNELS
 from .stages import Pyramid, Report, composite, read_picture, run_in_bands, upload_color
 from .types import FARTHEST, Gloss, RadiositySettings
 
-# Rays of a texel. Mesa's software driver ends the loops of a shader silently after 65,535 rounds in all: the steps of so
-# many rays in ten views, half of them with a step to bisect, stay below that.
+# Rays of a texel. Mesa's software driver ends the loops of a shader silently after 65,535 rounds in all: the steps of
+# so many rays in ten views, half of them with a step to bisect, stay below that.
 MAX_RAYS = 32
 
 

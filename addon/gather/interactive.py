@@ -31,8 +31,8 @@ CHANNELS = {
 
 
 def split(name: str, picture: Texture, camera: Camera | None, drawn: GpuPasses) -> None:
-    """Put a picture, by its name in CHANNELS, into `drawn`, and replace the one before. picture: (height, width), bottom
-    row first; "position" holds world positions, and (0, 0, 0) where there is no surface, and needs the camera."""
+    """Put a picture, by its name in CHANNELS, into `drawn`, and replace the one before. picture: (height, width),
+    bottom row first; "position" holds world positions, (0, 0, 0) where there is no surface, and needs the camera."""
     width, height = drawn.size
     quads = -(-width // 4)
     for channel, component in CHANNELS[name]:

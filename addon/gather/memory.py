@@ -20,8 +20,9 @@ def gpu_bytes(
     shines: bool = False,
     averages: bool = False,
 ) -> int:
-    """The most bytes of textures that gather_indirect(), or gather_views() with so many further views, has on the GPU at
-    a time, for a frame of width x height pixels. shines, averages: with Gloss, with a History of the frame before."""
+    """The most bytes of textures that gather_indirect(), or gather_views() with so many further views, has on the GPU
+    at a time, for a frame of width x height pixels. shines, averages: with Gloss, with a History of the frame
+    before."""
     if isinstance(settings, RadiositySettings):
         return _radiosity_bytes(width, height, settings, further, shines, averages)
     channel = -(-width // 4) * height * TEXEL

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The method Paper from top to bottom: upload, pack and merge (the pyramid), gather, upsample, composite, read back.
 
-Each stage is a function of its own, so that tests can feed and read it; gather_indirect() at the end puts them together.
-Equations: docs/method/paper.md.
+Each stage is a function of its own, so that tests can feed and read it; gather_indirect() at the end calls them in
+order. Equations: docs/method/paper.md.
 """
 
 from collections.abc import Callable

@@ -70,8 +70,8 @@ def gather_views(
 
     views: at most MAX_VIEWS, all of one resolution. world: (4, 3), EEVEE's world light on a white surface with normal n
     is world[0] + n @ world[1:], W sr^-1 m^-2; the part of it that surfaces cover is taken away, which needs
-    settings.visibility. history: of the frame before, or an empty one; it is averaged with this frame's light, and holds
-    the mean afterwards. gloss: of the first view; its picture is filled in, the mean of settings.gathers. Returns
+    settings.visibility. history: of the frame before, or an empty one; it is averaged with this frame's light, and
+    holds the mean afterwards. gloss: of the first view; its picture is filled in, the mean of settings.gathers. Returns
     (H, W, 3) float32, bottom row first: the indirect radiance to add to the picture, W sr^-1 m^-2, below 0 where the
     world's light is covered; 0 on background. progress, timings, broken, GpuUnavailable, Cancelled: as in
     gather_indirect(); broken is of the first view.
@@ -112,7 +112,7 @@ def gather_views(
     if history is not None:
         light = history.go_on(base, main, motion, table, light, settings.gathers, gathers)
     if gloss is not None:
-        gloss.picture = sum(pictures) / len(pictures)
+        gloss.picture = np.asarray(sum(pictures) / len(pictures))
 
     report("upsample", 1.0)
     indirect = composite(channels, base, smooth(base, light, table, settings), settings.strength)

@@ -168,6 +168,7 @@ SURFEL_FORMAT = "RGBA32UI"
 _SURFEL = ("common/camera", "common/surfel")
 _VIEWS = ("radiosity/views", "radiosity/visibility")
 _SAMPLE = ("radiosity/shadow_ray", "common/random", "common/form_factor")
+_EMIT_CHANNELS = (*ALL_CHANNELS, "depths")
 _EMIT = (VIEW, Field("receives", "bool", "whether receivers are made, or else emitters"))
 PASSES = {
     "pack": Pass((*_SURFEL, "common/pack"), ALL_CHANNELS, "surfels_out", group=STRIP),
@@ -212,7 +213,7 @@ PASSES = {
         (VIEW,),
         format="RG32F",
     ),
-    "emit": Pass(("common/camera", *_VIEWS, "radiosity/emit"), (*ALL_CHANNELS, "depths"), "records_out", _EMIT),
+    "emit": Pass(("common/camera", *_VIEWS, "radiosity/emit"), _EMIT_CHANNELS, "records_out", _EMIT),
     "emit_with_normals": Pass(
         ("common/camera", *_VIEWS, "common/geometric", "radiosity/emit"),
         (*ALL_CHANNELS, "depths"),

@@ -153,6 +153,7 @@ def run_in_bands(
     textures: dict[str, Texture],
     target: Texture,
     after_band: Callable[[float], None],
+    /,
     **named: Any,
 ) -> None:
     """Run a pass with first_row and first_column over "irradiance_out", some work groups at a time: whole rows of them,
@@ -199,7 +200,7 @@ def read_picture(indirect: Texture, width: int) -> np.ndarray:
 
 
 def stopwatch(timings: dict[str, float] | None) -> Callable[..., None]:
-    """A function lap(stage, texture) that waits for the texture and adds the time since the last lap; free if unused."""
+    """A function lap(stage, texture) that waits for the texture and adds the time since the last lap to timings."""
     if timings is None:
         return lambda stage, target=None: None
     last = time.perf_counter()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Uniform blocks: from one declaration of named fields the numpy layout that the host fills and the GLSL that declares it.
+"""Uniform blocks: named fields, declared once, as the numpy layout that the host fills and as the struct of GLSL.
 
 Blocks follow std140, by which OpenGL and Vulkan lay them out. Metal lays structs out as C does; both agree because
 every gap is filled by a field of its own, arrays have elements of whole 16 bytes, and nothing shares those of a vec3.

@@ -114,7 +114,7 @@ class View:
 
 @dataclass(eq=False)
 class Gloss:
-    """The specular reflectance of the picture's surfaces, rows top first, and the light that gather_views() finds for it.
+    """The specular reflectance of the picture's surfaces, rows top first, and the light that gather_views() adds to it.
 
     color: EEVEE's Glossy Color, the albedo of the specular lobe, (H, W) float32 each. roughness: (H, W) float32, 0 to
     1, as in Blender's materials. picture: (H, W, 3) float32, bottom row first: the specular indirect light, to add to
@@ -130,10 +130,10 @@ class Gloss:
 class RadiositySettings:
     """Settings of the method Radiosity: light between several views.
 
-    start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: shadow rays of a base texel, at most
-    MAX_GROUPS; candidates: emitters of which each is chosen. bounces: 1 and more. visibility: whether surfaces block
-    shadow rays. gathers: independent gathers that the picture is the mean of. smooth: whether noise is smoothed. seed,
-    strength: as in PaperSettings. Raises ValueError for anything else."""
+    start: pixels along the side of a base texel of the picture (1, 2 or 4). groups: shadow rays of a base texel, at
+    most MAX_GROUPS; candidates: emitters of which each is chosen. bounces: 1 and more. visibility: whether surfaces
+    block shadow rays. gathers: independent gathers that the picture is the mean of. smooth: whether noise is smoothed.
+    seed, strength: as in PaperSettings. Raises ValueError for anything else."""
 
     start: int
     groups: int = 16

@@ -12,7 +12,7 @@ from .. import gather
 from ..compositor import view_scenes
 from ..gather import interactive
 from ..host import report
-from ..scene import view_cameras
+from ..scene import needs, view_cameras
 from ..views import main_view, placement, ray_cast
 from . import offscreen, scene_changes
 
@@ -56,16 +56,18 @@ class Further:
             self._stamps = stamps
             return False
         self._wanted, self._stamps = wanted, stamps
-        self._kept = [Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.GpuPasses(size, {})) for pair in pairs]
+        self._kept = [
+            Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.GpuPasses(size, {})) for pair in pairs
+        ]
         return True
 
     def place(self, stage, drawn, camera):
         """Where no render has placed views yet, do as the scout of a render would (render/views_engine.py), by what
-        the viewport shows: gather.GpuPasses through gather.Camera. Once for each scene, or again when it has changed where
-        there was nothing to light it."""
+        the viewport shows: gather.GpuPasses through gather.Camera. Once for each scene, or again when it has changed
+        where there was nothing to light it."""
         scene, settings = stage.scene, stage.scene.afterlight
         if (
-            not view_scenes.wanted(scene)
+            not needs.views(scene)
             or settings.views != "AUTOMATIC"
             or not view_scenes.scout(scene)
             or view_scenes.placed(scene)
@@ -109,14 +111,14 @@ class Further:
 def _matrices(stage):
     """[(view matrix, window matrix)], (4, 4) float64 each, of the views that the scene's settings ask for."""
     scene, settings = stage.scene, stage.scene.afterlight
-    if not view_scenes.wanted(scene):
+    if not needs.views(scene):
         return []
     if settings.views == "MANUAL":
         cameras = [
             each.camera.evaluated_get(stage.depsgraph)
             for each in settings.view_cameras
             if each.camera and not view_scenes.unusable(each.camera)
-        ][: view_scenes.MOST]
+        ][: needs.MOST_VIEWS]
         found = [
             (np.array(camera.matrix_world.normalized()), view_cameras.lens_of(camera, stage.depsgraph, scene))
             for camera in cameras

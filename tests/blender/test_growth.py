@@ -262,7 +262,7 @@ picture.image = bpy.data.images.new("Sky", 8192, 4096)
 tree.links.new(picture.outputs[0], background.inputs[0])
 gpu.texture.from_image(picture.image)  # as EEVEE does
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-assert world.light(bpy.context.evaluated_depsgraph_get()) is None  # black
+assert world.light(bpy.context.evaluated_depsgraph_get(), {}) is None  # black
 print("MB:", (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
 """
 
@@ -292,7 +292,7 @@ def test_edits_cost_nothing_where_no_viewport_is_lit(scene, afterlight, monkeypa
 
 def test_a_scene_with_a_camera_is_not_searched_for_one(scene, afterlight, monkeypatch):
     checks, asked = afterlight.addon.diagnosis.checks, []
-    monkeypatch.setattr(checks.cures, "spare_camera", lambda scene: asked.append(scene))
+    monkeypatch.setattr(checks.fixes, "spare_camera", lambda scene: asked.append(scene))
     checks.findings(scene)
     assert not asked
     scene.camera = None
