@@ -64,8 +64,11 @@ def _radiosity_bytes(
     if averages:  # a new history: reprojected history, the first gathers and their mean with later ones
         steps += [sampling + 3 * base, averaging + 3 * base]
     if shines:
-        lit = packed + past + mean + emitters + receivers + base + specular + emitters
-        steps += [packed + past + specular + CHANNELS * channel, lit + max(3 * base, 2 * base + 6 * channel)]
+        lit = packed + past + mean + specular + emitters + receivers + base
+        steps += [
+            packed + past + specular + CHANNELS * channel,
+            lit + max(emitters, 3 * base, 2 * base + 6 * channel),  # specular light added, reflected, composited
+        ]
     return max(steps)
 
 

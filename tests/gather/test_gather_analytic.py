@@ -38,7 +38,7 @@ def polygon_area(camera, width, height, normal, distance):
         depth = (ray @ normal[:2] + distance) / normal[2]
     else:
         depth = -distance / (ray @ normal[:2] - normal[2])
-    place = reference.view_place(camera, corners, depth)
+    place = reference.view_position(camera, corners, depth)
     return 0.5 * abs(np.cross(place[2] - place[0], place[3] - place[1]) @ normal)
 
 
@@ -91,7 +91,7 @@ def test_merging_keeps_area_power_and_moment(light):
             level.area.sum(),
             (weight * level.radiance).sum((0, 1)),
             level.vector_area.sum((0, 1)),
-            (weight * level.place).sum((0, 1)),
+            (weight * level.position).sum((0, 1)),
         )
 
     area, power, vector_area, moment = sums(levels[0])
@@ -101,7 +101,7 @@ def test_merging_keeps_area_power_and_moment(light):
         assert area_ == pytest.approx(area, rel=1e-3)
         assert power_ == pytest.approx(power, rel=1e-3)
         assert vector_area_ == pytest.approx(vector_area, abs=1e-3 * area)
-        texel = camera.scale[0] * 2**index * -level.place[..., 2].min()
+        texel = camera.scale[0] * 2**index * -level.position[..., 2].min()
         assert moment_ == pytest.approx(moment, abs=area * (texel / 128 + 1e-3))
 
 
@@ -164,7 +164,7 @@ def test_form_factor_of_a_square(light, facing, normal, point, orthographic):
     1e-3, what a surfel's steps leave of directions."""
     camera = fixtures.camera_for(light, 96, 65, fov_x=0.8, orthographic_width=2.5 if orthographic else None)
     facing, normal = (reference.direction(np.array(vector, float)) for vector in (facing, normal))
-    at_three_metres = reference.view_place(camera, np.array([3.5, 0.5]), np.array(3.0))
+    at_three_metres = reference.view_position(camera, np.array([3.5, 0.5]), np.array(3.0))
     passes, (patch, polygon) = look(
         light, camera, 96, 65, [((3, 0, 1, 1), facing, at_three_metres), ((32, 1, 64, 64), normal, np.array(point))]
     )
@@ -257,4 +257,4 @@ def test_a_lone_pixel_without_normal_faces_the_camera(light):
     passes = fixtures.passes_from(light, np.full((1, 1), 2.0), *[np.zeros((1, 1, 3))] * 4)
     base = base_of(light, passes, camera)
     assert reference.direction(base.vector_area)[0, 0] == pytest.approx([0, 0, 1], abs=2e-3)
-    assert base.place[0, 0] == pytest.approx([0, 0, -2], abs=1e-4)
+    assert base.position[0, 0] == pytest.approx([0, 0, -2], abs=1e-4)

@@ -21,7 +21,7 @@ def test_what_new_textures_hold_does_not_matter(light, monkeypatch, size, start)
 
     def dirty(width, height, format="RGBA32F", data=None):
         made = new(width, height, format, data)
-        if data is None and format == device.SURFEL_FORMAT:
+        if data is None and format == light.shader_interface.SURFEL_FORMAT:
             made.clear(format="UINT", value=(0x7FFFFFFF,) * 4)  # a surfel of infinite radiance
         elif data is None:
             made.clear(format="FLOAT", value=(np.nan,) * 4)

@@ -10,7 +10,7 @@ import room_fixtures as rooms
 from reference import glossy as glossy_64
 from reference import radiosity as views_64
 
-EYES = [(0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (0.0, -0.98, 0.199)]
+OUTGOING = [(0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (0.0, -0.98, 0.199)]
 
 
 def numbers(count, seed=0):
@@ -19,22 +19,24 @@ def numbers(count, seed=0):
 
 
 @pytest.mark.parametrize("alpha", [0.01, 0.25, 0.64])
-@pytest.mark.parametrize("eye", EYES)
-def test_the_lobe_integrates_to_its_albedo(eye, alpha):
+@pytest.mark.parametrize("outgoing", OUTGOING)
+def test_the_lobe_integrates_to_its_albedo(outgoing, alpha):
     """The mean weight of drawn directions is the integral of the BRDF times the cosine: no lobe sends back more than
     it gets. And draws lie where the lobe has its light: their mean direction is the integral's."""
-    eye = np.array(eye) / np.linalg.norm(eye)
+    outgoing = np.array(outgoing) / np.linalg.norm(outgoing)
     facets, facet_steradians = glossy_64.hemisphere(1500, alpha)
-    cosine = facets @ eye
-    towards = 2 * cosine[:, None] * facets - eye
-    # The same integral over microfacets: d towards = 4 (eye.facet) d facet.
-    share = np.where(cosine > 0, glossy_64.lobe(eye, towards, alpha) * 4 * cosine * facet_steradians, 0)
+    cosine = facets @ outgoing
+    towards = 2 * cosine[:, None] * facets - outgoing
+    # The same integral over microfacets: d towards = 4 (outgoing.facet) d facet.
+    share = np.where(cosine > 0, glossy_64.lobe(outgoing, towards, alpha) * 4 * cosine * facet_steradians, 0)
     albedo, leaning = share.sum(), (share[:, None] * towards).sum(0) / share.sum()
     assert albedo <= 1 + 2e-3
     random = numbers(200_000)
-    facet = glossy_64.visible_normal(np.broadcast_to(eye, (len(random), 3)), np.full(len(random), alpha), random[:, :2])
-    away = 2 * (facet @ eye)[:, None] * facet - eye
-    weight = glossy_64.lobe_weight(eye[2], away[:, 2], alpha)
+    facet = glossy_64.visible_normal(
+        np.broadcast_to(outgoing, (len(random), 3)), np.full(len(random), alpha), random[:, :2]
+    )
+    away = 2 * (facet @ outgoing)[:, None] * facet - outgoing
+    weight = glossy_64.lobe_weight(outgoing[2], away[:, 2], alpha)
     assert weight.mean() == pytest.approx(albedo, abs=3e-3)
     np.testing.assert_allclose((weight[:, None] * away).sum(0) / weight.sum(), leaning, atol=3e-3)
 
@@ -57,7 +59,7 @@ def gathered(light, views, gloss, world=None, **changes):
 def test_furnace(light, roughness):
     """In a closed box that shines with 1 everywhere, every surface sends its Glossy Color back."""
     views = rooms.box_views(light, albedo=0.0)
-    picture = gathered(light, views, gloss_of(light, views[0].passes, 0.5, roughness))
+    picture = gathered(light, views, gloss_of(light, views[0].load_passes(), 0.5, roughness))
     assert abs(picture.mean() / 0.5 - 1) < 0.01
     assert picture.max() < 0.5 * 1.01 and np.mean(picture < 0.5 * 0.9) < 0.03
 
@@ -65,7 +67,7 @@ def test_furnace(light, roughness):
 def test_diffuse_and_gloss_together_send_no_more_than_they_get(light):
     """Of a surface whose colours sum to 0.9: eight bounces of a furnace whose walls keep a tenth."""
     views = rooms.box_views(light, albedo=0.6)
-    gloss = gloss_of(light, views[0].passes, 0.3, 0.4)
+    gloss = gloss_of(light, views[0].load_passes(), 0.3, 0.4)
     both = light.gather_views(views, draws(light, bounces=8), gloss=gloss) + gloss.picture
     own, sent = 1.0, 1 / (1 - 0.6)  # of each wall, and with all its diffuse bounces
     assert abs(both.mean() / (0.9 * sent) - 1) < 0.02
@@ -77,9 +79,9 @@ def staged_base(light, views, chosen):
     staged = stages(light, views, chosen)
     sent = sent_by(light, staged)
     base, level, places, normals = base_receivers(light, views, chosen)
-    step = int(staged.table["depths"][2])
+    step = int(staged.table["depth_step"])
     grids = [(*staged.grid("emitters", index), step) for index in range(len(views))]
-    count = light.radiosity.count_of(staged.table["emitters"])
+    count = light.view_layout.count_of(staged.table, "emitters")
     return (
         staged,
         base,
@@ -95,19 +97,13 @@ def staged_base(light, views, chosen):
 
 def reflected(light, base, table, textures, roughness, rays, seed=0):
     """(texels, 4) that the pass "reflect" gives for one roughness everywhere."""
-    _, _, across, up = base.boxes[0]
+    across, up = base.size
     surface = np.zeros((up, across, 4), np.float32)
     surface[...] = roughness, 1, 0, 0
-    table["draws"][0], table["odds"][3] = rays, light.glossy.reach_of(table, textures["depths"])
-    found = light.device.texture(across, up)
-    light.glossy.reflect(
-        base,
-        table,
-        seed,
-        textures
-        | {"surfels": base.surfels, "gloss": light.device.texture(across, up, data=surface), "irradiance_out": found},
-    )
-    return np.array(found.read(), float).reshape(-1, 4)
+    target, shine = light.device.texture(across, up), light.device.texture(across, up, data=surface)
+    textures = textures | {"surfels": base.surfels, "gloss": shine}
+    light.glossy.reflect(base, table, draws(light, groups=2 * rays, seed=seed), textures, target)
+    return np.array(target.read(), float).reshape(-1, 4)
 
 
 def shifts_of(across, up, seed=0):
@@ -140,7 +136,7 @@ def test_reflections_agree_with_float64(light, roughness, world):
     measured = reflected(light, base, staged.table, textures, roughness, 3)
     _, _, across, up = base.boxes[0]
     expected = glossy_64.reflect(
-        staged.eyes,
+        staged.cameras,
         grids,
         emitters,
         sent,
@@ -150,7 +146,7 @@ def test_reflections_agree_with_float64(light, roughness, world):
         np.full(len(places), roughness),
         shifts_of(across, up),
         3,
-        staged.table["odds"][3],
+        light.glossy.reach_of(staged.table, staged.depths),
         world * WORLD,
     )
     expected[areas == 0] = 0
@@ -170,7 +166,6 @@ def test_smoothing_agrees_with_float64(light, name):
     total = light.device.texture(across, up)
     light.device.dispatch(
         "smooth_gloss",
-        base.parameters,
         {
             "surfels": base.surfels,
             "gloss": light.device.texture(across, up, data=gloss),
@@ -178,6 +173,7 @@ def test_smoothing_agrees_with_float64(light, name):
             "total_out": total,
         },
         light.device.groups(across, up),
+        frame=base.frame,
     )
     measured, expected = (
         np.array(total.read(), float),
@@ -219,7 +215,7 @@ def test_mirrors_meet_what_exact_rays_meet(light):
     chosen = draws(light, start=1)
     staged, base, textures, _, _, _, places, normals, areas = staged_base(light, views, chosen)
     measured = reflected(light, base, staged.table, textures, 0.0, 1)[:, 3]
-    eye = views_64.direction(views_64.to_eye(staged.eyes[0], places))
+    eye = views_64.direction(views_64.to_camera(staged.cameras[0], places))
     towards = 2 * (eye * normals).sum(-1, keepdims=True) * normals - eye
     origin = views[0].camera.position
     expected = exact_hits(places + origin + 1e-6 * normals, towards, SOLIDS)
@@ -233,7 +229,7 @@ def test_mirrors_meet_what_exact_rays_meet(light):
 def test_the_sum_over_a_room(light, roughness, limit):
     """A lit box with solids, against the lobe's integral by exact rays in float64: error and energy."""
     views = all_around(light)
-    picture = gathered(light, views, gloss_of(light, views[0].passes, 1.0, roughness), start=1)
+    picture = gathered(light, views, gloss_of(light, views[0].load_passes(), 1.0, roughness), start=1)
     camera, size = views[0].camera, (96, 96)
     _, place, normal = rooms.trace(camera, size, solids=SOLIDS)
     pick = np.random.default_rng(1).permutation(96 * 96)[:1500]
@@ -298,7 +294,7 @@ def test_a_thin_wall_does_not_hide_what_its_other_side_reflects(light):
         )
         for index, (eye, towards) in enumerate(eyes)
     ]
-    picture = gathered(light, views, gloss_of(light, views[0].passes, 1.0, 0.3), start=1)
+    picture = gathered(light, views, gloss_of(light, views[0].load_passes(), 1.0, 0.3), start=1)
     _, place, _ = rooms.trace(views[0].camera, size, hall, wall)
     seen = picture[np.abs(place[..., 0] + 0.0075) < 1e-3]
     assert len(seen) > 3000 and seen.mean() > 0.99 and np.mean(seen < 0.5) < 0.002
@@ -307,8 +303,8 @@ def test_a_thin_wall_does_not_hide_what_its_other_side_reflects(light):
 def floor_view(light, size=(64, 48)):
     camera = rooms.camera_at(light, (0, 0, 2), (0, 1, -0.7), size)
     view = rooms.view_of(light, camera, size, room=((-6, -6, 0), (6, 6, 60)))
-    far = view.passes.normal[2] < 0.5  # walls and ceiling are not there
-    view.passes.depth[far] = 1e10
+    far = view.load_passes().normal[2] < 0.5  # walls and ceiling are not there
+    view.load_passes().depth[far] = 1e10
     return view
 
 
@@ -316,7 +312,7 @@ def floor_view(light, size=(64, 48)):
 def test_where_nothing_is_met_nothing_changes(light, world):
     """A floor under the sky: it keeps what EEVEE has reflected of the world."""
     view = floor_view(light)
-    assert not gathered(light, [view], gloss_of(light, view.passes, 1.0, 0.3), world).any()
+    assert not gathered(light, [view], gloss_of(light, view.load_passes(), 1.0, 0.3), world).any()
 
 
 def test_a_closed_room_reflects_nothing_of_the_world(light):
@@ -324,19 +320,19 @@ def test_a_closed_room_reflects_nothing_of_the_world(light):
     views = rooms.box_views(light, albedo=0.0)
     even = np.zeros((4, 3))
     even[0] = 0.7, 0.5, 0.2
-    picture = gathered(light, views, gloss_of(light, views[0].passes, 0.5, 0.3), even)
+    picture = gathered(light, views, gloss_of(light, views[0].load_passes(), 0.5, 0.3), even)
     np.testing.assert_allclose(picture.mean((0, 1)), 0.5 * (1 - even[0]), rtol=0.02)
 
 
 def test_only_what_shines_gets_light(light):
     """Glossy Color 0 and background stay black, and what is not finite costs no more than itself."""
     views = rooms.box_views(light, albedo=0.0)
-    gloss = gloss_of(light, views[0].passes)
+    gloss = gloss_of(light, views[0].load_passes())
     for channel in gloss.color:
         channel[:, :20] = 0
     gloss.color[0][30, 40] = np.nan
     gloss.roughness[32, 50] = np.inf
-    views[0].passes.depth[:10] = 1e10
+    views[0].load_passes().depth[:10] = 1e10
     picture = gathered(light, views, gloss)[::-1]
     assert (
         np.isfinite(picture).all()
@@ -350,7 +346,7 @@ def test_only_what_shines_gets_light(light):
 def test_the_diffuse_light_does_not_depend_on_gloss(light):
     views = rooms.box_views(light, radiance=rooms.lamp)
     plain = light.gather_views(views, draws(light))
-    shining = light.gather_views(views, draws(light), gloss=gloss_of(light, views[0].passes))
+    shining = light.gather_views(views, draws(light), gloss=gloss_of(light, views[0].load_passes()))
     np.testing.assert_array_equal(plain, shining)
 
 
@@ -380,7 +376,7 @@ def test_memory_is_what_the_textures_take(light, monkeypatch, size, start, shine
 
     monkeypatch.setattr(light.device, "texture", Texture)
     for name in ("dispatch", "wait", "run_band"):
-        monkeypatch.setattr(light.device, name, lambda *_: None)
+        monkeypatch.setattr(light.device, name, lambda *_, **__: None)
     monkeypatch.setattr(
         light.device,
         "read",
@@ -413,5 +409,5 @@ def test_gloss_shows_the_gloss_that_it_meets(light):
         for view in views
     ]
     for bounces, sent in ((1, 1.6), (2, 1.6 + 0.5)):
-        picture = gathered(light, shining, gloss_of(light, views[0].passes), bounces=bounces)
+        picture = gathered(light, shining, gloss_of(light, views[0].load_passes()), bounces=bounces)
         assert picture.mean() == pytest.approx(0.5 * sent, rel=0.02)

@@ -23,7 +23,7 @@ def camera(light, step=0.0, across=None):
 def base_of(light, view):
     """(Pyramid, reference.Level) of a view."""
     settings = light.RadiositySettings(start=START)
-    base = light.pack(light.upload(view.passes), view.passes, view.camera, settings)
+    base = light.pack(light.upload(view.load_passes()), view.load_passes(), view.camera, settings)
     return base, fixtures.level_arrays(base, view.camera, START)[0]
 
 
@@ -40,8 +40,8 @@ def noise(seed, shape=(SIZE[1] // START, SIZE[0] // START)):
 
 
 def known_by(light, past, view, base):
-    table = light.radiosity.view_table([view], SIZE, light.RadiositySettings(start=START))
-    return light.device.read(light.temporal.reproject(past, base, view.camera, view.passes.motion, table))
+    table = light.view_layout.view_table([view], SIZE, light.RadiositySettings(start=START))
+    return light.device.read(light.temporal.reproject(past, base, view.camera, view.load_passes().motion, table))
 
 
 # Against float64
@@ -75,7 +75,7 @@ def test_what_moves_is_looked_up_where_it_was(light):
         return (seen[..., :2] / -seen[..., 2:] - still.offset) / still.scale
 
     motion = np.where(moved[..., None], pixel(place - shift) - pixel(place), 0).astype(np.float32)
-    after.passes.motion = tuple(np.ascontiguousarray(motion[::-1, :, axis]) for axis in range(2))
+    after.load_passes().motion = tuple(np.ascontiguousarray(motion[::-1, :, axis]) for axis in range(2))
     past, past_level = remembered(light, before, noise(2))
     base, level = base_of(light, after)
     found = known_by(light, past, after, base)
@@ -114,7 +114,9 @@ def shot(light, step, radiance=rooms.lamp, solids=()):
 
 
 def draws(light, seed=0, **changes):
-    return light.RadiositySettings(**dict(start=START, bounces=1, groups=4, candidates=4, visibility=False, seed=seed) | changes)
+    return light.RadiositySettings(
+        **dict(start=START, bounces=1, groups=4, candidates=4, visibility=False, seed=seed) | changes
+    )
 
 
 def lit(history):
@@ -178,7 +180,7 @@ def test_a_frame_without_a_history_makes_up_for_it(light):
     light.gather_views(shot(light, 0), draws(light, 7919, groups=12, candidates=8), history=first)
     assert (gathers(first) == light.temporal.FRAMES).mean() > 0.99, "noise passes for change hardly ever"
     turned = [
-        light.View(view.passes, view.camera) for view in shot(light, 0)[1:]
+        light.View(view.load_passes(), view.camera) for view in shot(light, 0)[1:]
     ]  # a cut to what was out of the picture
     light.gather_views(turned[1:2] + turned, draws(light, 2), history=first)
     assert (gathers(first) == light.temporal.REBUILT).all()

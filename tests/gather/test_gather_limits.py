@@ -158,8 +158,10 @@ def test_a_frame_beyond_the_gpu_is_refused_by_name(light):
 
 
 def test_a_shader_that_does_not_compile_is_named(light, monkeypatch, tmp_path):
-    for file in light.device.SHADERS.glob("*.glsl"):
-        (tmp_path / file.name).write_text(file.read_text().replace("void main()", "void main("))
+    for file in light.device.SHADERS.rglob("*.glsl"):
+        copy = tmp_path / file.relative_to(light.device.SHADERS)
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_text(file.read_text().replace("void main()", "void main("))
     monkeypatch.setattr(light.device, "SHADERS", tmp_path)
     light.release()
     with pytest.raises(light.GpuUnavailable, match="'pack'.*Update the graphics driver"):

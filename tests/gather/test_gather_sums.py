@@ -57,7 +57,7 @@ def test_every_stage_agrees_with_float64(light, frame, start):
     guide, _ = reference.pack(passes, camera, start)
     picture = light.gather_indirect(passes, camera, chosen)
     agree(picture, reference.composite(passes, guide, levels[0], np.float64(total.read()), camera, start, 0.7))
-    composited = np.asarray(light.composite(channels, pyramid, total).read()).reshape(picture.shape[0], -1, 3)
+    composited = np.asarray(light.composite(channels, pyramid, total, 0.7).read()).reshape(picture.shape[0], -1, 3)
     assert np.array_equal(composited[:, : picture.shape[1]], picture)
 
 
@@ -66,7 +66,9 @@ def within_steps(level, exact, camera, step):
     place 1/256 of a texel, directions and radiance half of 1/1023 (z and blue: 1/511), of a power of two above it."""
     surface = exact.area > 0
     assert np.array_equal(level.area > 0, surface)
-    exact, level = ([image[surface] for image in (a.place, a.area, a.vector_area, a.radiance)] for a in (exact, level))
+    exact, level = (
+        [image[surface] for image in (a.position, a.area, a.vector_area, a.radiance)] for a in (exact, level)
+    )
     (place, area, vector_area, radiance), (place_, area_, vector_area_, radiance_) = exact, level
     slack = 1 + 1e-3  # of the steps, for float32
     assert (np.abs(place_[:, 2] / place[:, 2] - 1) <= slack * 2.0**-15).all()

@@ -12,16 +12,16 @@ COSINE_FLOOR = 0.05
 FARTHEST = 1e9
 NORMAL_POWER = 8
 FLATNESS_SHARPNESS = 16.0
-LEAST_WEIGHT = 1e-3
+MIN_WEIGHT = 1e-3
 DIRECTION_STEPS = np.array([1023, 1023, 511])
 RADIANCE_STEPS = np.array([1024, 1024, 512])
-LEAST_AREA = 2.0**-26
+MIN_AREA = 2.0**-26
 
 
 @dataclass
 class Level:
     radiance: np.ndarray  # (H, W, 3), mean over the area
-    place: np.ndarray  # (H, W, 3), mean
+    position: np.ndarray  # (H, W, 3), mean
     area: np.ndarray  # (H, W), sum of A
     vector_area: np.ndarray  # (H, W, 3), sum of A n
 
@@ -42,7 +42,7 @@ def pixel_centres(height, width):
     return np.stack(np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5), -1)
 
 
-def view_place(camera, pixel, depth):
+def view_position(camera, pixel, depth):
     ray = np.asarray(camera.offset) + np.asarray(camera.scale) * pixel
     if not camera.orthographic:
         ray = ray * depth[..., None]
@@ -54,8 +54,8 @@ def texel_area(camera, pixel, depth, normal):
     footprint = abs(camera.scale[0] * camera.scale[1])
     if camera.orthographic:
         return footprint / np.maximum(np.abs(normal[..., 2]), COSINE_FLOOR)
-    place = view_place(camera, pixel, depth)
-    cosine = np.maximum(np.abs(dot(normal, place)), COSINE_FLOOR * np.linalg.norm(place, axis=-1))
+    position = view_position(camera, pixel, depth)
+    cosine = np.maximum(np.abs(dot(normal, position)), COSINE_FLOOR * np.linalg.norm(position, axis=-1))
     return depth**3 * footprint / np.maximum(cosine, 1e-30)
 
 
@@ -64,9 +64,9 @@ def radiance(passes):
     return bottom_first(passes.diffuse_direct) * bottom_first(passes.diffuse_color) + bottom_first(passes.emission)
 
 
-def form_factor(receiver, normal, place, area, vector_area):
+def form_factor(receiver, normal, position, area, vector_area):
     """(n.w)+ (-V.w)+ / (pi r^2 + A); arrays that broadcast."""
-    path = place - receiver
+    path = position - receiver
     square = dot(path, path)
     cosines = np.maximum(dot(normal, path), 0) * np.maximum(-dot(vector_area, path), 0)
     return np.where(cosines > 0, cosines, 0) / np.maximum(square * (np.pi * square + area), 1e-300)
@@ -84,9 +84,9 @@ def pack(passes, camera, start):
     depth = np.where(sound, depth, 0)
     centres = pixel_centres(height, width)
     area = np.where(sound, texel_area(camera, centres, depth, normal), 0)
-    place = view_place(camera, centres, depth)
+    position = view_position(camera, centres, depth)
     return np.concatenate([normal, depth[..., None]], -1), _sum_blocks(
-        Level(light, place, area, area[..., None] * normal), start
+        Level(light, position, area, area[..., None] * normal), start
     )
 
 
@@ -100,13 +100,13 @@ def pack_surfel(level, camera, step):
     """(H, W, 4) uint32: the bits of a Level's surfels; step: pixels along the side of a texel."""
     height, width = level.area.shape
     surface = level.area > 0
-    depth = np.where(surface, -level.place[..., 2], 1)
-    ray = level.place[..., :2] / (1 if camera.orthographic else depth[..., None])
+    depth = np.where(surface, -level.position[..., 2], 1)
+    ray = level.position[..., :2] / (1 if camera.orthographic else depth[..., None])
     corner = np.stack(np.meshgrid(np.arange(width), np.arange(height)), -1)
     within = (ray - camera.offset) / (np.asarray(camera.scale) * step) - corner
     offset = np.clip(np.round(within * 128), 0, 127).astype(np.uint32)
-    area = np.clip(level.area / footprint(camera, depth, step), LEAST_AREA, 64)
-    area = np.minimum((_bits(area) - _bits(LEAST_AREA) + 0x200) >> 10, 0x3FFFF)
+    area = np.clip(level.area / footprint(camera, depth, step), MIN_AREA, 64)
+    area = np.minimum((_bits(area) - _bits(MIN_AREA) + 0x200) >> 10, 0x3FFFF)
     largest = np.abs(level.radiance).max(-1)
     exponent = np.minimum((_bits(largest) >> 23) + 1, 254)
     mantissa = level.radiance / 2.0 ** (exponent.astype(float)[..., None] - 127) * (exponent > 1)[..., None]
@@ -130,13 +130,13 @@ def unpack_surfel(bits, camera, step):
     within = np.stack([y & 0x7F, (y >> 7) & 0x7F], -1) / 128
     corner = np.stack(np.meshgrid(np.arange(width), np.arange(height)), -1)
     ray = np.asarray(camera.offset) + np.asarray(camera.scale) * step * (corner + within)
-    place = np.concatenate([ray if camera.orthographic else ray * depth[..., None], -depth[..., None]], -1)
-    area = (((y >> 14) << 10) + _bits(LEAST_AREA)).astype(np.uint32).view(np.float32).astype(np.float64)
+    position = np.concatenate([ray if camera.orthographic else ray * depth[..., None], -depth[..., None]], -1)
+    area = (((y >> 14) << 10) + _bits(MIN_AREA)).astype(np.uint32).view(np.float32).astype(np.float64)
     area = np.where(depth > 0, area * footprint(camera, depth, step), 0)
     scale = ((x & 0xFF) << 23).astype(np.uint32).view(np.float32).astype(np.float64)
     return Level(
         scale[..., None] * _unpack_signed(w, RADIANCE_STEPS),
-        place * (depth > 0)[..., None],
+        position * (depth > 0)[..., None],
         area,
         area[..., None] * _unpack_signed(z, DIRECTION_STEPS),
     )
@@ -173,7 +173,10 @@ def _sum_blocks(level, side):
     share = np.where(area > 0, 1 / np.maximum(area, 1e-300), 0)[..., None]
     weight = level.area[..., None]
     return Level(
-        blocks(weight * level.radiance) * share, blocks(weight * level.place) * share, area, blocks(level.vector_area)
+        blocks(weight * level.radiance) * share,
+        blocks(weight * level.position) * share,
+        area,
+        blocks(level.vector_area),
     )
 
 
@@ -209,7 +212,7 @@ def gather(level, finest, radius):
             if here[0].start >= here[0].stop or here[1].start >= here[1].stop:
                 continue
             form = form_factor(
-                level.place[here], normal[here], level.place[there], level.area[there], level.vector_area[there]
+                level.position[here], normal[here], level.position[there], level.area[there], level.vector_area[there]
             ) * (level.area[here] > 0)
             result[here] += form[..., None] * _emitted(level)[there]
     return result
@@ -223,15 +226,15 @@ def _emitted(level):
 def all_pairs(level, chunk=256):
     """(H, W, 4): irradiance and form factors that every texel receives from every other one. O(texels^2)."""
     shape = level.area.shape
-    place, area = level.place.reshape(-1, 3), level.area.ravel()
+    position, area = level.position.reshape(-1, 3), level.area.ravel()
     vector_area, emitted = level.vector_area.reshape(-1, 3), _emitted(level).reshape(-1, 4)
     normal = direction(vector_area)
     there = np.flatnonzero(area > 0)
     result = np.zeros((area.size, 4))
-    y, v = place[there], vector_area[there]
+    y, v = position[there], vector_area[there]
     for first in range(0, there.size, chunk):
         here = there[first : first + chunk]
-        x, n = place[here], normal[here]
+        x, n = position[here], normal[here]
         square = np.maximum(dot(x, x)[:, None] + dot(y, y) - 2 * x @ y.T, 1e-30)
         cosines = np.maximum(n @ y.T - dot(n, x)[:, None], 0) * np.maximum(x @ v.T - dot(y, v), 0)
         form = cosines / square / (np.pi * square + area[there])
@@ -253,10 +256,10 @@ def bilateral(coarse, total, position, receiver, normal):
         i, j = np.clip(i, 0, width - 1), np.clip(j, 0, height - 1)
         area = coarse.area[j, i]
         linear = (blend[..., 0] if sx else 1 - blend[..., 0]) * (blend[..., 1] if sy else 1 - blend[..., 1])
-        distance = dot(normal, coarse.place[j, i] - receiver)
+        distance = dot(normal, coarse.position[j, i] - receiver)
         flatness = 1 / (1 + FLATNESS_SHARPNESS * distance**2 / np.maximum(area, 1e-300))
         likeness = np.maximum(dot(normal, coarse_normal[j, i]), 0) ** NORMAL_POWER
-        weight = np.where(inside & (area > 0), linear * (flatness * likeness + LEAST_WEIGHT), 0)
+        weight = np.where(inside & (area > 0), linear * (flatness * likeness + MIN_WEIGHT), 0)
         result += weight[..., None] * total[j, i]
         weights += weight
     return result / np.maximum(weights, 1e-300)[..., None]
@@ -268,7 +271,7 @@ def upsample(levels, own):
     total = own[0].copy()
     for index in range(1, len(levels)):
         position = pixel_centres(*base.area.shape) / 2**index
-        upsampled = bilateral(levels[index], own[index], position, base.place, direction(base.vector_area))
+        upsampled = bilateral(levels[index], own[index], position, base.position, direction(base.vector_area))
         total += np.where(base.area[..., None] > 0, upsampled, 0)
     return total
 
@@ -281,7 +284,7 @@ def hierarchical_sum(levels, radius):
 def composite(passes, guide, base, total, camera, start, strength):
     """(H, W, 3): strength * albedo / pi * E / max(1, F)."""
     centres = pixel_centres(*guide.shape[:2])
-    received = bilateral(base, total, centres / start, view_place(camera, centres, guide[..., 3]), guide[..., :3])
+    received = bilateral(base, total, centres / start, view_position(camera, centres, guide[..., 3]), guide[..., :3])
     irradiance = received[..., :3] / np.maximum(received[..., 3:], 1)
     with np.errstate(invalid="ignore"):
         indirect = strength * bottom_first(passes.diffuse_color) * irradiance / np.pi

@@ -2,7 +2,7 @@
 """The light between several views in float64 numpy, function by function as in shaders/, and the sum over all pairs of
 a receiver and an emitter that it approximates.
 
-World space has the main camera's place as its origin. An Eye is what the shaders know of a view; depth maps have the
+World space has the main camera's position as its origin. An ViewCamera is what the shaders know of a view; depth maps have the
 bottom row first.
 """
 
@@ -20,7 +20,7 @@ from .paper import (
     dot,
     form_factor,
     pixel_centres,
-    view_place,
+    view_position,
 )
 from .paper import radiance as radiance_of
 
@@ -29,30 +29,30 @@ MARGIN = 0.01
 FREE_TOLERANCE = 1.0005
 THICKNESS = 0.03
 BISECTIONS = 4
-CONTINUOUS = 0.4
-SLOPE = 2.0
-STEEPEST = 1.1
+MAX_GAP_LEFT = 0.4
+MAX_GAP_SLOPE = 2.0
+MAX_REACH = 1.1
 DEPTH_TOLERANCE = 0.02
 SLOPE_TOLERANCE = 2.0
 SMOOTH_STEPS = 1, 2
-OUTSHINES = 4.0
+FIREFLY_RATIO = 4.0
 
 
 @dataclass
-class Eye:
+class ViewCamera:
     rotation: np.ndarray  # (3, 3), world to view
-    place: np.ndarray  # (3,)
+    position: np.ndarray  # (3,)
     scale: np.ndarray  # (2,), of a texel of the depth map
     offset: np.ndarray  # (2,)
-    parallel: bool  # orthographic
+    is_orthographic: bool
     depths: np.ndarray  # (h, w, 2), the depth map: depth, and the farthest that the surface reaches within the texel
 
 
-def eyes_of(views, step):
-    """An Eye for each view; step: pixels along the side of a depth map's texel."""
+def cameras_of(views, step):
+    """An ViewCamera for each view; step: pixels along the side of a depth map's texel."""
     origin = np.asarray(views[0].camera.position, float)
     return [
-        Eye(
+        ViewCamera(
             np.asarray(camera.rotation, float),
             np.asarray(camera.position, float) - origin,
             np.asarray(camera.scale) * step,
@@ -68,13 +68,13 @@ def eyes_of(views, step):
 def depths(view, step):
     """(h, w, 2): the depth of the pixel in the middle of each step x step, and the farthest that its plane reaches at
     their corners."""
-    camera, depth = view.camera, view.passes.depth[::-1].astype(np.float64)
-    normal = bottom_first(view.passes.normal) @ np.asarray(camera.rotation).T
+    camera, depth = view.camera, view.load_passes().depth[::-1].astype(np.float64)
+    normal = bottom_first(view.load_passes().normal) @ np.asarray(camera.rotation).T
     rows, columns = (np.minimum(np.arange(0, side, step) + step // 2, side - 1) for side in depth.shape)
     surface = (depth > 0) & (depth < FARTHEST)
-    place = view_place(camera, pixel_centres(*depth.shape), np.where(surface, depth, 1))
-    depth, normal, place = (
-        image[np.ix_(rows, columns)] for image in (np.where(surface, depth, 2 * FARTHEST), normal, place)
+    position = view_position(camera, pixel_centres(*depth.shape), np.where(surface, depth, 1))
+    depth, normal, position = (
+        image[np.ix_(rows, columns)] for image in (np.where(surface, depth, 2 * FARTHEST), normal, position)
     )
     surface, farthest = depth < FARTHEST, depth
     texel = np.stack(np.meshgrid(np.arange(len(columns)), np.arange(len(rows))), -1)
@@ -82,79 +82,83 @@ def depths(view, step):
         ray = np.asarray(camera.offset) + np.asarray(camera.scale) * step * (texel + corner)
         ray = np.concatenate([ray, np.zeros(depth.shape)[..., None] - (not camera.orthographic)], -1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            # Where the corner's ray meets the plane n.(p - place) = 0; below 0 where it never does ahead of the camera.
+            # Where the corner's ray meets the plane n.(p - position) = 0; below 0 where it never does ahead of the camera.
             reach = (
-                dot(normal, ray - place * (1, 1, 0)) / normal[..., 2] + depth
+                dot(normal, ray - position * (1, 1, 0)) / normal[..., 2] + depth
                 if camera.orthographic
-                else dot(normal, place) / dot(normal, ray)
+                else dot(normal, position) / dot(normal, ray)
             )
         known = surface & np.isfinite(reach) & normal.any(-1)
-        reach = np.where(known & (reach > 0), np.minimum(reach, STEEPEST * depth), STEEPEST * depth)
+        reach = np.where(known & (reach > 0), np.minimum(reach, MAX_REACH * depth), MAX_REACH * depth)
         farthest = np.maximum(farthest, np.where(known, reach, 0))
     return np.stack([depth, farthest], -1)
 
 
-def to_view(eye, place):
-    return (place - eye.place) @ eye.rotation.T
+def to_view(view, position):
+    return (position - view.position) @ view.rotation.T
 
 
-def to_eye(eye, place):
+def to_camera(view, position):
     """Towards the camera."""
-    return np.broadcast_to(eye.rotation[2], place.shape) if eye.parallel else eye.place - place
+    return np.broadcast_to(view.rotation[2], position.shape) if view.is_orthographic else view.position - position
 
 
-def project(eye, place):
+def project(view, position):
     """(..., 3): x, y in texels of the depth map, planar depth."""
-    seen = to_view(eye, place)
-    w = np.ones(seen.shape[:-1]) if eye.parallel else np.maximum(-seen[..., 2], NEAREST)
-    return np.concatenate([(seen[..., :2] / w[..., None] - eye.offset) / eye.scale, -seen[..., 2:]], -1)
+    seen = to_view(view, position)
+    w = np.ones(seen.shape[:-1]) if view.is_orthographic else np.maximum(-seen[..., 2], NEAREST)
+    return np.concatenate([(seen[..., :2] / w[..., None] - view.offset) / view.scale, -seen[..., 2:]], -1)
 
 
-def shown_area(eye, place, normal, depth):
+def shown_area(view, position, normal, depth):
     """World area of what a texel of the depth map shows: z^3 du dv / |n.p| in perspective."""
-    footprint = abs(eye.scale[0] * eye.scale[1])
-    back = to_eye(eye, place)
-    cosine = np.maximum(np.abs(dot(normal, direction(back))), COSINE_FLOOR)
-    return footprint / cosine if eye.parallel else depth**3 * footprint / np.linalg.norm(back, axis=-1) / cosine
+    footprint = abs(view.scale[0] * view.scale[1])
+    outgoing = to_camera(view, position)
+    cosine = np.maximum(np.abs(dot(normal, direction(outgoing))), COSINE_FLOOR)
+    return (
+        footprint / cosine
+        if view.is_orthographic
+        else depth**3 * footprint / np.linalg.norm(outgoing, axis=-1) / cosine
+    )
 
 
-def depth_at(eye, projected, which=0):
+def depth_at(view, projected, which=0):
     """What the depth map shows there (which=1: the farthest in its texel); 0 outside its frame and behind the
     camera."""
-    height, width = eye.depths.shape[:2]
+    height, width = view.depths.shape[:2]
     x, y = (np.floor(np.clip(projected[..., axis], -1e6, 1e6)).astype(int) for axis in (0, 1))
     inside = (projected[..., 2] > NEAREST) & (x >= 0) & (y >= 0) & (x < width) & (y < height)
-    return np.where(inside, eye.depths[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1), which], 0)
+    return np.where(inside, view.depths[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1), which], 0)
 
 
-def shows(eye, place, normal, back, projected):
-    """Does the view show this very surface, from the side to which `back` points?"""
-    other = to_eye(eye, place)
+def shows(view, position, normal, outgoing, projected):
+    """Does the view show this very surface, from the side to which `outgoing` points?"""
+    other = to_camera(view, position)
     cosine = np.maximum(np.abs(dot(normal, direction(other))), COSINE_FLOOR)
     depth = projected[..., 2]
-    texel = max(abs(eye.scale)) * (1 if eye.parallel else depth)
+    texel = max(abs(view.scale)) * (1 if view.is_orthographic else depth)
     slope = np.sqrt(np.maximum(1 - cosine**2, 0)) / cosine
-    near = np.abs(depth_at(eye, projected) - depth) < DEPTH_TOLERANCE * depth + SLOPE_TOLERANCE * slope * texel
-    return (dot(normal, other) * dot(normal, back) > 0) & near
+    near = np.abs(depth_at(view, projected) - depth) < DEPTH_TOLERANCE * depth + SLOPE_TOLERANCE * slope * texel
+    return (dot(normal, other) * dot(normal, outgoing) > 0) & near
 
 
-def own_share(eyes, own, place, normal, depth):
+def own_share(cameras, own, position, normal, depth):
     """Share of a surface that is one view's: w_k = A_k^-1 / sum_j A_j^-1."""
-    mine = 1 / shown_area(eyes[own], place, normal, depth)
-    everyone, back = mine.copy(), to_eye(eyes[own], place)
-    for index, eye in enumerate(eyes):
-        projected = project(eye, place)
-        seen = (depth_at(eye, projected) > 0) & shows(eye, place, normal, back, projected)
+    mine = 1 / shown_area(cameras[own], position, normal, depth)
+    everyone, outgoing = mine.copy(), to_camera(cameras[own], position)
+    for index, view in enumerate(cameras):
+        projected = project(view, position)
+        seen = (depth_at(view, projected) > 0) & shows(view, position, normal, outgoing, projected)
         if index != own:
             depths_there = np.where(seen, projected[..., 2], 1)
-            everyone += np.where(seen, 1 / shown_area(eye, place, normal, depths_there), 0)
+            everyone += np.where(seen, 1 / shown_area(view, position, normal, depths_there), 0)
     return mine / everyone
 
 
-def emit(views, eyes, own, side, step, receives):
+def emit(views, cameras, own, side, step, receives):
     """(rows, columns, 4, 4): the records of one view's blocks of side x side pixels, as shaders/emit.glsl stores
     them."""
-    passes, camera, eye = views[own].passes, views[own].camera, eyes[own]
+    passes, camera, view = views[own].load_passes(), views[own].camera, cameras[own]
     depth = passes.depth[::-1].astype(np.float64)
     height, width = depth.shape
     normal, color, light = bottom_first(passes.normal), bottom_first(passes.diffuse_color), radiance_of(passes)
@@ -163,9 +167,9 @@ def emit(views, eyes, own, side, step, receives):
     depth = np.where(sound, depth, 1)
     normal = np.where(sound[..., None], direction(np.where(sound[..., None], normal, 1)), (0, 0, 1))
     light, color = (np.where(sound[..., None], image, 0) for image in (light, color))
-    place = view_place(camera, pixel_centres(height, width), depth) @ eye.rotation + eye.place
-    shown = np.where(sound, shown_area(eye, place, normal, depth), 0)
-    mine = shown if receives else shown * own_share(eyes, own, place, normal, depth)
+    position = view_position(camera, pixel_centres(height, width), depth) @ view.rotation + view.position
+    shown = np.where(sound, shown_area(view, position, normal, depth), 0)
+    mine = shown if receives else shown * own_share(cameras, own, position, normal, depth)
 
     def blocks(image):
         image = np.pad(image, [(0, -height % side), (0, -width % side)] + [(0, 0)] * (image.ndim - 2))
@@ -173,7 +177,7 @@ def emit(views, eyes, own, side, step, receives):
 
     area = blocks(mine)
     share = np.where(area > 0, 1 / np.where(area > 0, area, 1), 0)[..., None]
-    means = [blocks(mine[..., None] * image) * share for image in (place, normal, light, color)]
+    means = [blocks(mine[..., None] * image) * share for image in (position, normal, light, color)]
     last = [area / step**2, blocks(shown) / step**2, 0 * area, 0 * area]
     return np.stack([np.concatenate([mean, end[..., None]], -1) for mean, end in zip(means, last)], -2)
 
@@ -195,48 +199,50 @@ def receiver_of(grid, receivers):
     return (first + y[:, None] * wide + x).ravel()
 
 
-def gap_at(eye, places):
-    """(shown, gap): whether the view's frame holds a place, and how far before the surface there it lies; below 0
+def gap_at(view, positions):
+    """(shown, gap): whether the view's frame holds a position, and how far before the surface there it lies; below 0
     behind it. Beside the frame, what its edge shows."""
-    projected = project(eye, places)
-    height, width = eye.depths.shape[:2]
-    shown = depth_at(eye, projected) > 0
+    projected = project(view, positions)
+    height, width = view.depths.shape[:2]
+    shown = depth_at(view, projected) > 0
     texel = np.clip(projected[..., :2], 0, (width - 1e-9, height - 1e-9)).astype(int)
-    return shown, eye.depths[texel[..., 1], texel[..., 0], 1] * FREE_TOLERANCE - projected[..., 2]
+    return shown, view.depths[texel[..., 1], texel[..., 0], 1] * FREE_TOLERANCE - projected[..., 2]
 
 
-def passes_through(eye, start, path, low, high):
+def passes_through(view, start, path, low, high):
     """((n,) bool, (n,), (n,)): ways that are seen at one end of a step and hidden at the other go through a surface,
     and not behind the edge of something nearer, where the gap jumps; and between which shares of them."""
-    gap_low, gap_high = (gap_at(eye, start + path * share[:, None])[1] for share in (low, high))
-    whole = np.minimum(np.abs(gap_low - gap_high), SLOPE * np.linalg.norm(path, axis=-1) * (high - low))
+    gap_low, gap_high = (gap_at(view, start + path * share[:, None])[1] for share in (low, high))
+    whole = np.minimum(np.abs(gap_low - gap_high), MAX_GAP_SLOPE * np.linalg.norm(path, axis=-1) * (high - low))
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
-        gap = gap_at(eye, start + path * middle[:, None])[1]
+        gap = gap_at(view, start + path * middle[:, None])[1]
         before = (gap > 0) == (gap_low > 0)
         low, gap_low = np.where(before, middle, low), np.where(before, gap, gap_low)
         high, gap_high = np.where(before, high, middle), np.where(before, gap_high, gap)
-    return np.abs(gap_low - gap_high) < CONTINUOUS * whole, low, high
+    return np.abs(gap_low - gap_high) < MAX_GAP_LEFT * whole, low, high
 
 
-def is_blocked(eyes, start, end, jitter, steps):
-    """(n,) bool: some view sees the way pass through a surface, or some place on it lies close behind a view's
+def is_blocked(cameras, start, end, jitter, steps):
+    """(n,) bool: some view sees the way pass through a surface, or some position on it lies close behind a view's
     surfaces and is seen free by none. start, end: (n, 3)."""
     share = (np.arange(steps)[:, None] + np.broadcast_to(jitter, len(start))) / steps  # (steps, n)
     path = end - start
-    places = start + path * share[..., None]
+    positions = start + path * share[..., None]
     thickness = THICKNESS * np.linalg.norm(path, axis=-1)
     free, within = np.zeros((2, *share.shape), bool)
     passed = np.zeros((steps - 1, len(start)), bool)
     counted = (share >= MARGIN) & (share <= 1 - MARGIN)
     both = counted[:-1] & counted[1:]
-    for eye in eyes:
-        shown, gap = gap_at(eye, places)
+    for view in cameras:
+        shown, gap = gap_at(view, positions)
         seen, hidden = shown & (gap > 0), shown & (gap <= 0)
         free |= seen
         within |= hidden & (gap > -thickness)
-        step, way = np.nonzero(((seen[:-1] & hidden[1:]) | (hidden[:-1] & seen[1:])) & both)
-        passed[step, way] |= passes_through(eye, start[way], path[way], share[step, way], share[step + 1, way])[0]
+        step, segment = np.nonzero(((seen[:-1] & hidden[1:]) | (hidden[:-1] & seen[1:])) & both)
+        passed[step, segment] |= passes_through(
+            view, start[segment], path[segment], share[step, segment], share[step + 1, segment]
+        )[0]
     return passed.any(0) | (within & ~free & counted).any(0)
 
 
@@ -254,7 +260,7 @@ def world_radiance(world, towards):
     return world_light(world, 1.5 * towards)
 
 
-def odds(sent, by_area, world=0.0):
+def pdf_factors(sent, by_area, world=0.0):
     """(x, y): an emitter is drawn with the chance (x * (power + world) + y) * area."""
     area, power = sent[:, 3], power_of(sent) + world
     bright = (power * area).sum()
@@ -262,33 +268,36 @@ def odds(sent, by_area, world=0.0):
     return ((1 - by_area) / bright if bright > 0 else 0), by_area / area.sum()
 
 
-def chances(sent, by_area):
+def pdfs(sent, by_area):
     """(n,) the chance of every emitter, 1 in all."""
-    power_odds, area_odds = odds(sent, by_area)
-    return (power_odds * power_of(sent) + area_odds) * sent[:, 3]
+    power_pdf, area_pdf = pdf_factors(sent, by_area)
+    return (power_pdf * power_of(sent) + area_pdf) * sent[:, 3]
 
 
-def all_pairs(places, normals, emitters, sent, share_free=1.0, world=None):
+def all_pairs(positions, normals, emitters, sent, share_free=1.0, world=None):
     """(n, 3): the irradiance of receivers from every emitter. share_free: (n, emitters), or 1 where nothing hides.
     world: (4, 3), the light of which each emitter takes its part away."""
     form = form_factor(
-        places[:, None], normals[:, None], emitters[:, 0, :3], emitters[:, 1, 3], sent[:, 3:] * emitters[:, 1, :3]
+        positions[:, None], normals[:, None], emitters[:, 0, :3], emitters[:, 1, 3], sent[:, 3:] * emitters[:, 1, :3]
     )
     lit = (form * share_free) @ sent[:, :3]
     if world is not None:
-        towards = world_radiance(world, direction(emitters[:, 0, :3] - places[:, None]))
+        towards = world_radiance(world, direction(emitters[:, 0, :3] - positions[:, None]))
         lit -= ((form * share_free)[..., None] * towards).sum(1)
     return np.pi * lit
 
 
-def share_free(eyes, places, normals, emitters, steps, jitters=16):
+def share_free(cameras, positions, normals, emitters, steps, jitters=16):
     """(n, emitters): for which share of the jitters the way is free; 1 where no light goes anyway."""
-    path = emitters[:, 0, :3] - places[:, None]
+    path = emitters[:, 0, :3] - positions[:, None]
     lit = (dot(normals[:, None], path) > 0) & (dot(emitters[:, 1, :3], path) < 0) & (emitters[:, 0, 3] > 0)
     here, there = np.nonzero(lit)
     free = np.ones(lit.shape)
     free[here, there] -= np.mean(
-        [is_blocked(eyes, places[here], emitters[there, 0, :3], (k + 0.5) / jitters, steps) for k in range(jitters)],
+        [
+            is_blocked(cameras, positions[here], emitters[there, 0, :3], (k + 0.5) / jitters, steps)
+            for k in range(jitters)
+        ],
         axis=0,
     )
     return free
@@ -312,7 +321,7 @@ def smooth(level, irradiance, world=None):
             dx, dy = step * x, step * y
             here = slice(max(0, -dy), max(0, height - max(0, dy))), slice(max(0, -dx), max(0, width - max(0, dx)))
             there = slice(max(0, dy), max(0, height + min(0, dy))), slice(max(0, dx), max(0, width + min(0, dx)))
-            distance = dot(normal[here], level.place[there] - level.place[here])
+            distance = dot(normal[here], level.position[there] - level.position[here])
             flatness = 1 / (1 + FLATNESS_SHARPNESS * distance**2 / np.where(surface[there], level.area[there], 1))
             likeness = np.maximum(dot(normal[here], normal[there]), 0) ** NORMAL_POWER
             weight = np.where(surface[here] & surface[there], spline[abs(x)] * spline[abs(y)] * flatness * likeness, 0)
@@ -323,7 +332,7 @@ def smooth(level, irradiance, world=None):
             its_weight[here] = np.where(brighter, weight, its_weight[here])
         if step == 1:
             others = weights - its_weight
-            most = OUTSHINES * brightness(total - its_weight[..., None] * brightest) / np.maximum(others, 1e-37)
+            most = FIREFLY_RATIO * brightness(total - its_weight[..., None] * brightest) / np.maximum(others, 1e-37)
             over = np.where(others > 1, 1 - np.minimum(most / np.maximum(brightness(brightest), 1e-37), 1), 0)
             total -= (its_weight * over)[..., None] * brightest
         mean = total / weights[..., None]

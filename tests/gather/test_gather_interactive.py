@@ -15,8 +15,8 @@ SIZES = [(45, 30), (64, 8)]
 
 
 @pytest.fixture(scope="module")
-def live(light):
-    return import_module(f"{light.__name__}.live")
+def interactive(light):
+    return import_module(f"{light.__name__}.interactive")
 
 
 def cameras(light, size):
@@ -45,20 +45,20 @@ def picture(light, image):
     return light.device.texture(width, height, data=np.ascontiguousarray(padded, np.float32))
 
 
-def drawn_from(light, live, frame, camera):
+def drawn_from(light, interactive, frame, camera):
     """light.GpuPasses of a frame, as if EEVEE had drawn its passes."""
     drawn = light.GpuPasses(frame.size, {})
-    live.split("position", picture(light, places(frame, camera)), camera, drawn)
+    interactive.split("position", picture(light, places(frame, camera)), camera, drawn)
     for name in ("normal", "diffuse_color", "diffuse_direct", "emission"):
-        live.split(name, picture(light, np.stack(getattr(frame, name), -1)[::-1]), None, drawn)
+        interactive.split(name, picture(light, np.stack(getattr(frame, name), -1)[::-1]), None, drawn)
     return drawn
 
 
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("kind", [0, 1])
-def test_pictures_are_split_into_the_channels_of_passes(light, live, size, kind):
+def test_pictures_are_split_into_the_channels_of_passes(light, interactive, size, kind):
     frame, camera = fixtures.random_frame(light, *size), cameras(light, size)[kind]
-    drawn, uploaded = drawn_from(light, live, frame, camera), light.upload(frame)
+    drawn, uploaded = drawn_from(light, interactive, frame, camera), light.upload(frame)
     assert drawn.textures.keys() == uploaded.keys()
     for name, texture in uploaded.items():
         found, exact = light.device.read(drawn.textures[name]), light.device.read(texture)
@@ -67,19 +67,19 @@ def test_pictures_are_split_into_the_channels_of_passes(light, live, size, kind)
         np.testing.assert_allclose(
             found.reshape(size[1], -1)[:, : size[0]], exact.reshape(size[1], -1)[:, : size[0]], rtol=2e-6, err_msg=name
         )
-    back = live.read(drawn)
+    back = interactive.read(drawn)
     np.testing.assert_allclose(back.depth, frame.depth, rtol=2e-6)
     np.testing.assert_array_equal(back.normal, frame.normal)
 
 
 @pytest.mark.parametrize("kind", [0, 1])
-def test_span_is_of_all_that_is_shown(light, live, kind):
+def test_the_depth_range_is_of_all_that_is_shown(light, interactive, kind):
     frame, camera = fixtures.random_frame(light, 45, 30), cameras(light, (45, 30))[kind]
     shown = frame.depth[frame.depth < 1e9]
-    assert live.span(picture(light, places(frame, camera)), camera) == pytest.approx(
+    assert interactive.depth_range(picture(light, places(frame, camera)), camera) == pytest.approx(
         (shown.min(), shown.max()), rel=1e-5
     )
-    assert live.span(picture(light, np.zeros((30, 45, 3))), camera) is None
+    assert interactive.depth_range(picture(light, np.zeros((30, 45, 3))), camera) is None
 
 
 def room(light, size):
@@ -93,11 +93,11 @@ def room(light, size):
     return [rooms.view_of(light, camera, size, solids=solids, radiance=rooms.lamp) for camera in seen]
 
 
-def test_one_gather_is_that_of_a_render(light, live):
+def test_one_gather_is_that_of_a_render(light, interactive):
     """The same numbers by the same stages, wherever the passes come from; and so for the method Paper."""
     size = 64, 48
     views = room(light, size)
-    drawn = [replace(view, source=light.GpuPasses(size, light.upload(view.passes))) for view in views]
+    drawn = [replace(view, source=light.GpuPasses(size, light.upload(view.load_passes()))) for view in views]
     for chosen in (
         light.RadiositySettings(start=1, bounces=2, groups=4),
         light.PaperSettings(start=2, samples=0, radius=8, seed=0, strength=1.0),
@@ -105,35 +105,35 @@ def test_one_gather_is_that_of_a_render(light, live):
         if isinstance(chosen, light.RadiositySettings):
             exact = light.gather_views(views, chosen)
         else:
-            exact = light.gather_indirect(views[0].passes, views[0].camera, chosen)
-        found = light.device.read(live.indirect(drawn, size, chosen)).reshape(48, -1, 3)[:, :64]
+            exact = light.gather_indirect(views[0].load_passes(), views[0].camera, chosen)
+        found = light.device.read(interactive.indirect(drawn, size, chosen)).reshape(48, -1, 3)[:, :64]
         np.testing.assert_allclose(found, exact, atol=1e-5 * exact.max(), err_msg=str(chosen))
 
 
-def test_small_views_light_as_large_ones_do(light, live, monkeypatch):
+def test_small_views_light_as_large_ones_do(light, interactive, monkeypatch):
     """Views with a pixel for each texel of the depth maps, beside a main view with 3 x 3; and all of them small."""
-    monkeypatch.setattr(light.radiosity, "DEPTHS_ACROSS", 48)
+    monkeypatch.setattr(light.view_layout, "DEPTHS_ACROSS", 48)
     size, chosen = (144, 108), light.RadiositySettings(start=2, bounces=3, groups=16)
     large = room(light, size)
-    small = live.coarse_size(size)
+    small = interactive.coarse_size(size)
     assert small == (48, 36)
     coarse = [replace(view, coarse=True) for view in room(light, small)]
     exact = light.gather_views(large, chosen)
-    mixed = light.device.read(live.indirect([large[0], *coarse[1:]], size, chosen)).reshape(108, -1, 3)[:, :144]
+    mixed = light.device.read(interactive.indirect([large[0], *coarse[1:]], size, chosen)).reshape(108, -1, 3)[:, :144]
     assert mixed.mean() == pytest.approx(exact.mean(), rel=0.01)
     assert np.abs(mixed - exact).mean() < 0.08 * exact.mean()
-    draft = light.device.read(live.indirect(coarse, size, replace(chosen, start=1))).reshape(36, -1, 3)[:, :48]
+    draft = light.device.read(interactive.indirect(coarse, size, replace(chosen, start=1))).reshape(36, -1, 3)[:, :48]
     blocks = exact.reshape(36, 3, 48, 3, 3).mean((1, 3))
     assert draft.mean() == pytest.approx(exact.mean(), rel=0.02)
     assert np.abs(draft - blocks).mean() < 0.12 * exact.mean()
 
 
-def test_history_calms_what_is_shown(light, live):
+def test_history_calms_what_is_shown(light, interactive):
     size, chosen = (64, 48), light.RadiositySettings(start=2, bounces=1, groups=1, smooth=False)
     views = room(light, size)
 
     def gathered(history, seed):
-        return light.device.read(live.indirect(views, size, replace(chosen, seed=seed), history=history))
+        return light.device.read(interactive.indirect(views, size, replace(chosen, seed=seed), history=history))
 
     history = light.History()
     alone = [gathered(None, seed) for seed in range(8)]
@@ -142,9 +142,9 @@ def test_history_calms_what_is_shown(light, live):
     assert np.mean(calm) == pytest.approx(np.mean(alone), rel=0.03)
 
 
-def test_mean(light, live):
+def test_mean(light, interactive):
     size = 7, 5
-    rng, mean = np.random.default_rng(0), live.Mean()
+    rng, mean = np.random.default_rng(0), interactive.Mean()
     pictures = rng.uniform(-1, 1, (3, 5, 8, 3)).astype(np.float32)  # two quads across
     for count in range(1, 4):
         rows = np.ascontiguousarray(pictures[count - 1].reshape(5, 6, 4))
