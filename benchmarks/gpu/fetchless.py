@@ -13,7 +13,7 @@ from . import opengl
 
 def gather_passes(light):
     """Names of the passes that gather."""
-    return [name for name, made_of in light.device.PASSES.items() if "gather" in made_of.files]
+    return [name for name, made_of in light.shader_interface.PASSES.items() if "paper/gather" in made_of.files]
 
 
 @contextmanager
@@ -36,7 +36,7 @@ def _shaders(light):
 
 @cache
 def _create_info(light):
-    gather = (light.device.SHADERS / "gather.glsl").read_text()
+    gather = (light.device.SHADERS / "paper/gather.glsl").read_text()
 
     class CreateInfo(opengl.CreateInfo):
         def __init__(self):

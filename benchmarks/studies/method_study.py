@@ -142,7 +142,7 @@ def upsampling_table():
         (16, 8, 1e-4),
         (0, 0, 1),
     ):
-        reference.FLATNESS_SHARPNESS, reference.NORMAL_POWER, reference.LEAST_WEIGHT = flatness, power, least
+        reference.FLATNESS_SHARPNESS, reference.NORMAL_POWER, reference.MIN_WEIGHT = flatness, power, least
         cells = []
         for start, guide, levels, own in cases:
             total = reference.upsample(levels, own)

@@ -150,7 +150,7 @@ class Room:
         (place, normal, area), sent = self.solution(self.patch)
         views = self.views(light)
         shown = np.zeros(len(place), bool)
-        for eye, view in zip(views_64.eyes_of(views, 1), views):
+        for eye, view in zip(views_64.cameras_of(views, 1), views):
             origin = views[0].camera.position
             inside = views_64.depth_at(eye, views_64.project(eye, place - origin)) > 0
             front = ((view.camera.position - place) * normal).sum(-1) > 0
@@ -265,25 +265,30 @@ class Case:
 
 @contextmanager
 def changed(light, **constants):
-    """With other values of constants of addon/gather/radiosity.py, or of the shaders."""
-    was = {name: getattr(light.radiosity, name) for name in constants if hasattr(light.radiosity, name)}
+    """With other values of constants of addon/gather/radiosity.py and view_layout.py, or of the shaders."""
+    modules = {
+        name: module for module in (light.radiosity, light.view_layout) for name in constants if hasattr(module, name)
+    }
+    was = {name: getattr(module, name) for name, module in modules.items()}
     folder = light.device.SHADERS
     with tempfile.TemporaryDirectory() as other:
-        for file in folder.glob("*.glsl"):
+        for file in folder.rglob("*.glsl"):
             text = file.read_text()
             for name in constants.keys() - was.keys():
                 text = re.sub(rf"(#define {name} )\S+", rf"\g<1>{constants[name]}", text)
-            (Path(other) / file.name).write_text(text)
+            copy = Path(other) / file.relative_to(folder)
+            copy.parent.mkdir(exist_ok=True)
+            copy.write_text(text)
         try:
             for name in was:
-                setattr(light.radiosity, name, constants[name])
+                setattr(modules[name], name, constants[name])
             if constants.keys() - was.keys():
                 light.device.SHADERS = Path(other)
                 light.device.release()
             yield
         finally:
             for name, value in was.items():
-                setattr(light.radiosity, name, value)
+                setattr(modules[name], name, value)
             light.device.SHADERS = folder
             if constants.keys() - was.keys():
                 light.device.release()
@@ -312,7 +317,7 @@ def costs(cases):
                 ("BOUNCE_GROUPS", 4),
                 ("BOUNCE_GROUPS", 8),
                 ("BOUNCE_GROUPS", 32),
-                ("STEPS", 16),
+                ("SHADOW_STEPS", 16),
                 ("EMITTER", 4),
                 ("RECEIVER", 4),
                 ("RECEIVER", 16),
@@ -400,13 +405,13 @@ def bounce_draws(cases):
 def ways(cases):
     """What the depth maps take for blocked and for free, of ways between patches that face each other."""
     print(
-        "\n| `STEPS` | `THICKNESS` | `CONTINUOUS` | "
+        "\n| `SHADOW_STEPS` | `THICKNESS` | `MAX_GAP_LEFT` | "
         + " | ".join(f"{case.room.name}: free ways blocked, hidden ways free" for case in cases)
         + " |\n"
         + "|---" * (len(cases) + 3)
         + "|"
     )
-    usual = views_64.THICKNESS, views_64.CONTINUOUS
+    usual = views_64.THICKNESS, views_64.MAX_GAP_LEFT
     for steps, *values in [
         (8, *usual),
         (16, *usual),
@@ -419,7 +424,7 @@ def ways(cases):
         (24, usual[0], 0.125),
         (24, usual[0], 0.5),
     ]:
-        views_64.THICKNESS, views_64.CONTINUOUS = values
+        views_64.THICKNESS, views_64.MAX_GAP_LEFT = values
         found = [misjudged(case, steps) for case in cases]
         print(
             f"| {steps} | {values[0]} | {values[1]} | "
@@ -427,27 +432,27 @@ def ways(cases):
             + " |",
             flush=True,
         )
-    views_64.THICKNESS, views_64.CONTINUOUS = usual
+    views_64.THICKNESS, views_64.MAX_GAP_LEFT = usual
 
 
 def slope(cases):
     """As ways(), for the most that the gap to a surface may change over a step."""
-    cases, usual = [*cases, Case(PILLARS, cases[0].light)], views_64.SLOPE
+    cases, usual = [*cases, Case(PILLARS, cases[0].light)], views_64.MAX_GAP_SLOPE
     print(
-        "\n| `SLOPE` | "
+        "\n| `MAX_GAP_SLOPE` | "
         + " | ".join(f"{case.room.name}: free ways blocked, hidden ways free" for case in cases)
         + " |\n"
         + "|---" * (len(cases) + 1)
         + "|"
     )
-    for views_64.SLOPE in (0.5, 1.0, 2.0, 4.0, 8.0, np.inf):
+    for views_64.MAX_GAP_SLOPE in (0.5, 1.0, 2.0, 4.0, 8.0, np.inf):
         print(
-            f"| {views_64.SLOPE} | "
+            f"| {views_64.MAX_GAP_SLOPE} | "
             + " | ".join("{:.1%}, {:.1%}".format(*misjudged(case, 24)) for case in cases)
             + " |",
             flush=True,
         )
-    views_64.SLOPE = usual
+    views_64.MAX_GAP_SLOPE = usual
 
 
 def misjudged(case, steps, count=20_000):
@@ -460,7 +465,7 @@ def misjudged(case, steps, count=20_000):
     start, end = place[start[facing]], place[end[facing]]
     origin = case.views[0].camera.position
     blocked = views_64.is_blocked(
-        views_64.eyes_of(case.views, 1), start - origin, end - origin, rng.random(len(start)), steps
+        views_64.cameras_of(case.views, 1), start - origin, end - origin, rng.random(len(start)), steps
     )
     true = rooms.is_hidden(start, end, case.room.solids)
     return blocked[~true].mean(), 1 - blocked[true].mean()
@@ -470,7 +475,7 @@ TABLES = {
     "causes": causes,
     "draws": draws,
     "bounce_draws": bounce_draws,
-    "steps": constant("STEPS", (8, 16, 24, 32)),
+    "steps": constant("SHADOW_STEPS", (8, 16, 24, 32)),
     "by_area": constant("BY_AREA", (0.1, 0.25, 0.5, 0.75, 1.0)),
     "emitter": constant("EMITTER", (1, 2, 4, 8)),
     "receiver": constant("RECEIVER", (4, 8, 16, 32)),
@@ -478,7 +483,7 @@ TABLES = {
     "depths": constant("DEPTHS_ACROSS", (80, 160, 320)),
     "margin": constant("MARGIN", (0.0, 0.01, 0.02, 0.05)),
     "thickness": constant("THICKNESS", (0.0, 0.01, 0.03, 0.1, 1.0)),
-    "continuous": constant("CONTINUOUS", (0.1, 0.2, 0.3, 0.5)),
+    "continuous": constant("MAX_GAP_LEFT", (0.1, 0.2, 0.3, 0.5)),
     "near": constant("NEAR_SHARE", (0, 2, 4, 8)),
     "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
     "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Camera: the position of a pixel in view space and the area of its surface, for four neighbouring pixels of a row at a
-// time; and the texels of a frame's pyramid and passes. Pixel coordinates count from the lower left corner of the frame;
-// a pixel's centre is at +0.5.
+// time; and the texels of a frame's pyramid and passes. Pixel coordinates count from the lower left corner of the
+// frame; a pixel's centre is at +0.5.
 
 struct Quad {
   vec4 x, y, z;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Composite: the base's irradiance upsampled to full resolution, times the reflectance, albedo / pi. One thread makes four
-// neighbouring pixels and writes r g b r g b ..., the layout of Blender's passes.
+// Composite: the base's irradiance upsampled to full resolution, times the reflectance, albedo / pi. One thread makes
+// four neighbouring pixels and writes r g b r g b ..., the layout of Blender's passes.
 
 void main()
 {
@@ -11,14 +11,16 @@ void main()
   }
   ivec2 source = pass_texel(quad, row);
   vec4 depth = texelFetch(depth_pass, source, 0);
-  Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
-  Quad albedo = quad_of(texelFetch(color_r, source, 0), texelFetch(color_g, source, 0), texelFetch(color_b, source, 0));
+  Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0),
+                       texelFetch(normal_z, source, 0));
+  Quad albedo = quad_of(texelFetch(color_r, source, 0), texelFetch(color_g, source, 0),
+                        texelFetch(color_b, source, 0));
   vec4 columns = float(4 * quad) + vec4(0.5, 1.5, 2.5, 3.5);
   Quad position = view_position(columns, float(row) + 0.5, depth);
   Quad normal = view_normal(world);
 
-  // Each pixel is interpolated between the four base texels around it; the loop covers those of all four pixels. With one
-  // texel a pixel, each pixel lies on the centre of its own.
+  // Each pixel is interpolated between the four base texels around it; the loop covers those of all four pixels. With
+  // one texel a pixel, each pixel lies on the centre of its own.
   float start = float(frame.start);
   ivec2 taps = frame.start == 4 ? ivec2(3, 2) : frame.start == 2 ? ivec2(4, 2) : ivec2(4, 1);
   vec4 across = columns / start - 0.5;

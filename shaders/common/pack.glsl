@@ -22,7 +22,8 @@ void main()
   for (int row = texel_row * start; row < min(texel_row * start + start, frame.size.y); row++) {
     ivec2 source = pass_texel(quad, row);
     vec4 depth = texelFetch(depth_pass, source, 0);
-    Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0), texelFetch(normal_z, source, 0));
+    Quad world = quad_of(texelFetch(normal_x, source, 0), texelFetch(normal_y, source, 0),
+                         texelFetch(normal_z, source, 0));
     Quad radiance = quad_of(
         texelFetch(direct_r, source, 0) * texelFetch(color_r, source, 0) + texelFetch(emission_r, source, 0),
         texelFetch(direct_g, source, 0) * texelFetch(color_g, source, 0) + texelFetch(emission_g, source, 0),

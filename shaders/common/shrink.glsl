@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shrink: the means of a picture, times a colour, over the cells of a grid. Pixels whose brightest channel then exceeds a
-// limit are scaled down to it first.
+// Shrink: the means of a picture, times a colour, over the cells of a grid. Pixels whose brightest channel then exceeds
+// a limit are scaled down to it first.
 
 void main()
 {

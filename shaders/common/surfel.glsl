@@ -2,8 +2,8 @@
 // Surfel: the surfaces that one texel of the pyramid stands for, and their 128 bits in the texture.
 //
 //   x   depth, 22 bits of its float (14 of mantissa); exponent of the radiance, 8 bits
-//   y   area relative to the texel's footprint at that depth, 5 bits of exponent and 13 of mantissa; position within the
-//       texel, 7 bits an axis
+//   y   area relative to the texel's footprint at that depth, 5 bits of exponent and 13 of mantissa; position within
+//       the texel, 7 bits an axis
 //   z   vector area over area, 11, 11 and 10 bits
 //   w   radiance over 2^exponent, 11, 11 and 10 bits; signed, since a lamp may have negative power
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GGX: the isotropic specular lobe. alpha: the square of Blender's roughness. Directions are in the frame of the normal,
-// which is z. Formulas: docs/method/glossy.md.
+// GGX: the isotropic specular lobe. alpha: the square of Blender's roughness. Directions are in the frame of the
+// normal, which is z. Formulas: docs/method/glossy.md.
 
 // Smith's Lambda of a direction with this cosine to the normal.
 float smith(float cosine, float alpha)
@@ -9,8 +9,8 @@ float smith(float cosine, float alpha)
   return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 - square) / max(square, 1e-12)) - 1.0);
 }
 
-// A sample of the distribution of visible normals (E. Heitz 2018, by the spherical cap of J. Dupuy and A. Benyoub 2023).
-// outgoing: direction to the camera; random: two numbers in [0, 1).
+// A sample of the distribution of visible normals (E. Heitz 2018, by the spherical cap of J. Dupuy and A. Benyoub
+// 2023). outgoing: direction to the camera; random: two numbers in [0, 1).
 vec3 visible_normal(vec3 outgoing, float alpha, vec2 random)
 {
   vec3 stretched = direction(vec3(alpha * outgoing.xy, outgoing.z));

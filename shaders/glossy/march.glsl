@@ -37,12 +37,14 @@ vec3 normal_of(int number)
   return texelFetch(emitters, record_texel(number, 1, 4), 0).xyz;
 }
 
-// Can a ray enter (goes_in), or leave, the surface that a view shows at a position? It enters from the side of the normal and
-// against it, and leaves from behind and along it. By depths alone, positions close behind a thin wall would be free.
+// Can a ray enter (goes_in), or leave, the surface that a view shows at a position? It enters from the side of the
+// normal and against it, and leaves from behind and along it. By depths alone, positions close behind a thin wall would
+// be free.
 bool can_pass(int view, vec3 position, vec3 start, vec3 towards, bool goes_in)
 {
   int number = emitter_at(view, position);
-  vec3 normal = normal_of(max(number, 0)), from = start - texelFetch(emitters, record_texel(max(number, 0), 0, 4), 0).xyz;
+  vec3 normal = normal_of(max(number, 0));
+  vec3 from = start - texelFetch(emitters, record_texel(max(number, 0), 0, 4), 0).xyz;
   return number >= 0 && (dot(normal, towards) < 0.0) == goes_in && (dot(normal, from) > 0.0) == goes_in;
 }
 
@@ -53,14 +55,15 @@ bool is_seen(vec3 position)
   for (uint left = all_views(); left != 0u; left &= left - 1u) {
     int view = findLSB(left);
     vec4 projected = projection_of(view, position);
-    is_visible = is_visible || (projected.z > NEAREST && is_inside(texel_of(projected), views.depth_size) && gap_at(view, projected) > 0.0);
+    bool is_shown = projected.z > NEAREST && is_inside(texel_of(projected), views.depth_size);
+    is_visible = is_visible || (is_shown && gap_at(view, projected) > 0.0);
   }
   return is_visible;
 }
 
-// Metres to the first surface that some view sees the ray pass through; 0 where it ends in the open, and LOST where it stays
-// behind something and no view sees the sky there. Steps are even in the view's picture. least, reach: metres from the
-// position to the ray's start and end.
+// Metres to the first surface that some view sees the ray pass through; 0 where it ends in the open, and LOST where it
+// stays behind something and no view sees the sky there. Steps are even in the view's picture. least, reach: metres
+// from the position to the ray's start and end.
 float first_hit(vec3 position, vec3 normal, vec3 towards, float least, float jitter, float reach)
 {
   float nearest = reach;
@@ -76,12 +79,13 @@ float first_hit(vec3 position, vec3 normal, vec3 towards, float least, float jit
     float texels = length(first.xy / max(first.w, NEAREST) - last.xy / max(last.w, NEAREST));
     int steps = int(clamp(ceil(texels / MARCH_TEXELS), 4.0, float(MARCH_STEPS)));
     float before = span.x;
-    // A ray leaves a surface only from a position that no view sees: it has entered through a side that none shows. Where a
-    // view shows the start of the ray, it must have been visible before: hidden at its start it is only below the surface
-    // that it leaves, within a texel of the depth map.
+    // A ray leaves a surface only from a position that no view sees: it has entered through a side that none shows.
+    // Where a view shows the start of the ray, it must have been visible before: hidden at its start it is only below
+    // the surface that it leaves, within a texel of the depth map.
     vec3 projected = project(view, position);
     bool was_free = gap_at(view, first) > 0.0;
-    bool is_shown = view == 0 || shows(view, position, normal, to_camera(0, position), projected, depth_at(view, projected));
+    bool is_shown = view == 0 ||
+                    shows(view, position, normal, to_camera(0, position), projected, depth_at(view, projected));
     bool has_begun = was_free || !is_shown;
     for (int k = 0; k <= steps; k++) {
       float share = min((float(k) + jitter) / float(steps), 1.0);
@@ -112,8 +116,8 @@ float first_hit(vec3 position, vec3 normal, vec3 towards, float least, float jit
   return nearest < reach ? nearest : is_hidden && !is_open ? LOST : 0.0;
 }
 
-// Radiance that leaves a position on a surface against `towards`: the mean of the views that show that side, weighted by
-// the fineness of their pixels. a: 1, or 0 where none shows it.
+// Radiance that leaves a position on a surface against `towards`: the mean of the views that show that side, weighted
+// by the fineness of their pixels. a: 1, or 0 where none shows it.
 vec4 radiance_at(vec3 position, vec3 towards)
 {
   vec3 sum = vec3(0.0);
@@ -127,7 +131,8 @@ vec4 radiance_at(vec3 position, vec3 towards)
     vec4 first = texelFetch(emitters, record_texel(number, 0, 4), 0);
     vec3 normal = direction(normal_of(number));
     float depth = project(view, position).z;
-    // In the plane of the surface shown there, and on the side that the view shows: depth alone tells little on a slope.
+    // In the plane of the surface shown there, and on the side that the view shows: depth alone tells little on a
+    // slope.
     bool is_same = abs(dot(normal, position - first.xyz)) < DEPTH_TOLERANCE * depth;
     if (first.a > 0.0 && is_same && dot(normal, towards) * dot(normal, to_camera(view, position)) < 0.0) {
       float weight = 1.0 / shown_area(view, position, normal, depth);

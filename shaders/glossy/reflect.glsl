@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reflect: the specular light of each texel of the base. rgb: pi times the mean radiance over the lobe of a white surface;
-// EEVEE's Glossy Color has the albedo. a: the mean of 1 / distance of the hits.
+// Reflect: the specular light of each texel of the base. rgb: pi times the mean radiance over the lobe of a white
+// surface; EEVEE's Glossy Color has the albedo. a: the mean of 1 / distance of the hits.
 //
 // EEVEE has the whole world in its reflections. A hit covers its part of the world and takes that light away. A ray
 // without a hit adds nothing; one that ends out of sight, or hits a side that no view shows, counts as the mean of the

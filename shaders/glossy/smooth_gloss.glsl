@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth gloss: reduces the noise of the specular light, by a mean over the texels around on the same surface with the same
-// roughness. Its width is a share of the lobe's footprint on the surface, so that reflections stay as sharp as the lobe
-// shows them.
+// Smooth gloss: reduces the noise of the specular light, by a mean over the texels around on the same surface with the
+// same roughness. Its width is a share of the lobe's footprint on the surface, so that reflections stay as sharp as the
+// lobe shows them.
 
 #define GLOSS_RADIUS 3        // texels at most
 #define MAX_DEVIATION 0.7     // of GLOSS_RADIUS, at most; chosen by eye, not measured

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Upsample: the irradiance of each texel of the base from all levels: its own, and that of every coarser level, interpolated
-// between the four texels of that level around it.
+// Upsample: the irradiance of each texel of the base from all levels: its own, and that of every coarser level,
+// interpolated between the four texels of that level around it.
 
 vec4 bilateral(ivec2 texel, Surfel receiver, vec3 normal, int level)
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiate: the radiance of each emitter: its own, and albedo / pi times the irradiance of the receiver that it belongs to.
-// a: its area, for the table of emitters.
+// Radiate: the radiance of each emitter: its own, and albedo / pi times the irradiance of the receiver that it belongs
+// to. a: its area, for the table of emitters.
 //
-// ADDS_DIFFUSE: the emitters hold specular light, in place of diffuse light. Their radiance is added to the diffuse one,
-// which has the area.
+// ADDS_DIFFUSE: the emitters hold specular light, in place of diffuse light. Their radiance is added to the diffuse
+// one, which has the area.
 
 void main()
 {
@@ -16,9 +16,10 @@ void main()
   }
   ivec2 block = ivec2(within % grid.size.x, within / grid.size.x);
   ivec2 receiver = min(block * grid.side / receivers.side, receivers.size - 1);
-  vec3 irradiance = texelFetch(irradiance, record_texel(receivers.first + receiver.y * receivers.size.x + receiver.x, 0, 1), 0).rgb;
+  int owner = receivers.first + receiver.y * receivers.size.x + receiver.x;
+  vec3 received = texelFetch(irradiance, record_texel(owner, 0, 1), 0).rgb;
   vec3 radiance = texelFetch(emitters, record_texel(number, 2, 4), 0).rgb +
-                  texelFetch(emitters, record_texel(number, 3, 4), 0).rgb * irradiance / PI;
+                  texelFetch(emitters, record_texel(number, 3, 4), 0).rgb * received / PI;
   // One pixel that overflows must not spoil the picture.
   if (!is_finite(abs(radiance.r) + abs(radiance.g) + abs(radiance.b))) {
     radiance = vec3(0.0);

@@ -2,8 +2,8 @@
 // Sample emitters: the irradiance of a receiver from the emitters of all views, W m^-2.
 //
 // Resampled importance sampling (Talbot et al. 2005): a shadow ray costs as much as weighing dozens of candidates. So
-// candidates come in groups, one of each group is chosen in proportion to its unoccluded irradiance and stands for all of
-// them, and only it gets a shadow ray. Unbiased for any number of groups and candidates.
+// candidates come in groups, one of each group is chosen in proportion to its unoccluded irradiance and stands for all
+// of them, and only it gets a shadow ray. Unbiased for any number of groups and candidates.
 //
 // Candidates come from two strategies: a table that holds each emitter in proportion to its power and area, and the
 // neighbourhood of the receiver in the views that show it, since near emitters count most and a table for all receivers
@@ -30,7 +30,10 @@ ivec2 sample_ring(float ring, float along)
 {
   int k = clamp(int(exp(ring * log(float(NEAR_RINGS + 1)))), 1, NEAR_RINGS);
   int step = min(int(along * float(8 * k)), 8 * k - 1), side = step / (2 * k), offset = step % (2 * k) - k;
-  return side == 0 ? ivec2(offset, -k) : side == 1 ? ivec2(k, offset) : side == 2 ? ivec2(-offset, k) : ivec2(-k, -offset);
+  return side == 0 ? ivec2(offset, -k) :
+         side == 1 ? ivec2(k, offset) :
+         side == 2 ? ivec2(-offset, k) :
+                     ivec2(-k, -offset);
 }
 
 void main()
@@ -51,7 +54,8 @@ void main()
         near_count++;
       }
     }
-    int near_candidates = near_count > 0 ? candidates * NEAR_SHARE / 16 : 0, table_candidates = candidates - near_candidates;
+    int near_candidates = near_count > 0 ? candidates * NEAR_SHARE / 16 : 0;
+    int table_candidates = candidates - near_candidates;
     for (int group = 0; group < groups; group++) {
       float total = 0.0, weight = 0.0;
       vec3 light = vec3(0.0), from = vec3(0.0);
@@ -89,7 +93,8 @@ void main()
         if (form <= 0.0 || power == 0.0) {
           continue;
         }
-        float pdf = float(table_candidates) * (options.power_pdf * (power_of(sent.rgb) + options.world_power) + options.area_pdf) * first.a;
+        float pdf = float(table_candidates) *
+                    (options.power_pdf * (power_of(sent.rgb) + options.world_power) + options.area_pdf) * first.a;
         if (near_candidates > 0 && (near_views >> view & 1u) != 0u) {
           Grid grid = views.cameras[view].emitters;
           int within = number - grid.first;

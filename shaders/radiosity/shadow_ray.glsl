@@ -4,9 +4,10 @@
 #define MARGIN 0.01           // of the segment, at both ends
 #define THICKNESS 0.03        // of the segment: assumed of things that no view shows from behind
 
-// Is the segment blocked? It is where some view sees it pass through a surface, and where a point of it lies close behind
-// one and no view sees that point free. Farther behind a surface nothing is known, which counts as free. Points along the
-// segment are bits, and views are taken one after the other, since the projection is linear along the segment.
+// Is the segment blocked? It is where some view sees it pass through a surface, and where a point of it lies close
+// behind one and no view sees that point free. Farther behind a surface nothing is known, which counts as free. Points
+// along the segment are bits, and views are taken one after the other, since the projection is linear along the
+// segment.
 bool is_blocked(vec3 from, vec3 to, float jitter, int steps)
 {
   // Both ends are left out: surfaces do not hide themselves.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth: reduces the noise of the base's irradiance, by means over the texels around on the same surface, in steps that
-// take texels farther and farther apart (the wavelet transform "a trous"; H. Dammertz et al., HPG 2010). A firefly, one
-// texel much brighter than all around it, is clamped to FIREFLY_RATIO times their mean. Noise may not take away more of
-// the world's light than there is.
+// Smooth: reduces the noise of the base's irradiance, by means over the texels around on the same surface, in steps
+// that take texels farther and farther apart (the wavelet transform "a trous"; H. Dammertz et al., HPG 2010). A
+// firefly, one texel much brighter than all around it, is clamped to FIREFLY_RATIO times their mean. Noise may not take
+// away more of the world's light than there is.
 
 #define FIREFLY_RATIO 4.0     // of the mean of the others
 

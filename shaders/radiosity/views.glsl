@@ -10,8 +10,8 @@ struct Receiver {
   bool is_surface;
 };
 
-// A bit for each. Loops go over these bits: drivers unroll a loop over the indices of an array, and compile its body ten
-// times.
+// A bit for each. Loops go over these bits: drivers unroll a loop over the indices of an array, and compile its body
+// ten times.
 uint all_views()
 {
   return (1u << uint(views.count)) - 1u;
@@ -20,7 +20,8 @@ uint all_views()
 vec3 to_view(int view, vec3 position)
 {
   vec4 p = vec4(position, 1.0);
-  return vec3(dot(views.cameras[view].rotation[0], p), dot(views.cameras[view].rotation[1], p), dot(views.cameras[view].rotation[2], p));
+  return vec3(dot(views.cameras[view].rotation[0], p), dot(views.cameras[view].rotation[1], p),
+              dot(views.cameras[view].rotation[2], p));
 }
 
 // Of a direction: without the translation.
@@ -62,7 +63,8 @@ vec3 project(int view, vec3 position)
   return vec3(projected.xy / max(projected.w, NEAREST), projected.z);
 }
 
-// The cell of a view's grid of emitters that a position falls in; far outside of the grid where it is behind the camera.
+// The cell of a view's grid of emitters that a position falls in; far outside of the grid where it is behind the
+// camera.
 ivec2 grid_cell(int view, vec3 position)
 {
   vec3 projected = project(view, position);
@@ -76,14 +78,16 @@ float shown_area(int view, vec3 position, vec3 normal, float depth)
   float footprint = abs(views.cameras[view].scale.x * views.cameras[view].scale.y);
   vec3 outgoing = to_camera(view, position);
   float cosine = max(abs(dot(normal, direction(outgoing))), COSINE_FLOOR);
-  return is_orthographic(view) ? footprint / cosine :
-                             depth * depth * footprint * depth * inversesqrt(max(dot(outgoing, outgoing), 1e-37)) / cosine;
+  return is_orthographic(view) ?
+             footprint / cosine :
+             depth * depth * footprint * depth * inversesqrt(max(dot(outgoing, outgoing), 1e-37)) / cosine;
 }
 
 // EEVEE's world light on a white surface, as radiance: spherical harmonics up to the first order, unoccluded.
 vec3 world_light(vec3 normal)
 {
-  return views.world[0].rgb + normal.x * views.world[1].rgb + normal.y * views.world[2].rgb + normal.z * views.world[3].rgb;
+  return views.world[0].rgb + normal.x * views.world[1].rgb + normal.y * views.world[2].rgb +
+         normal.z * views.world[3].rgb;
 }
 
 // The radiance from a direction that makes this light: a cosine lobe damps the first order to 2/3.

@@ -4,7 +4,7 @@
 #define FREE_TOLERANCE 1.0005 // of the farthest depth in a texel: up to there a position counts as visible
 #define BISECTIONS 4          // of a step over which visibility changes
 #define MAX_GAP_LEFT 0.4      // of the change of the gap over that step, at most left after these if it is continuous
-#define MAX_GAP_SLOPE 2.0     // of the step: a larger change of the gap is a silhouette of another object, not a crossing
+#define MAX_GAP_SLOPE 2.0     // of the step: a larger change of the gap is another object's silhouette, not a crossing
 #define DEPTH_TOLERANCE 0.02  // of the depth
 #define SLOPE_TOLERANCE 2.0   // texels of the depth map, times the slope
 
@@ -36,8 +36,8 @@ ivec2 texel_of(vec4 projected)
   return ivec2(floor(projected.xy / max(projected.w, NEAREST)));
 }
 
-// Depth of the surface that a view shows there, less that of the position: above 0 where it is visible, below 0 behind the
-// surface.
+// Depth of the surface that a view shows there, less that of the position: above 0 where it is visible, below 0 behind
+// the surface.
 float gap_at(int view, vec4 projected)
 {
   ivec2 texel = texel_of(projected);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accumulate: the mean of a texel's history and its new irradiance. a: number of gathers that it is the mean of, -1 where
-// there is no surface.
+// Accumulate: the mean of a texel's history and its new irradiance. a: number of gathers that it is the mean of, -1
+// where there is no surface.
 //
 // Light that changes must not lag behind. One texel can't tell change from noise, but its neighbourhood can: there all
 // texels differ from their history by the same drift, each with noise of its own. A drift of the texels on the same
-// surface that exceeds the noise is added to the history before the mean is taken. And where much of the light around has
-// changed, on any surface, the history's weight is reduced, down to 0: texels do not change alike then.
+// surface that exceeds the noise is added to the history before the mean is taken. And where much of the light around
+// has changed, on any surface, the history's weight is reduced, down to 0: texels do not change alike then.
 
 #define DRIFT_RADIUS 2        // taps to each side
 #define DRIFT_STRIDE 2        // texels between taps
@@ -74,15 +74,18 @@ void main()
         vec3 after = texelFetch(irradiance, tap, 0).rgb;
         tally(around, after, before.rgb);
         Surfel surfel = unpack_surfel(texelFetch(surfels, tap, 0), tap, 0);
-        float height = dot(normal, surfel.position - receiver.position), cosine = dot(normal, direction(surfel.vector_area));
+        float height = dot(normal, surfel.position - receiver.position);
+        float cosine = dot(normal, direction(surfel.vector_area));
         if (bilateral_weight(vec4(height), vec4(cosine), surfel.area).x > SAME_SURFACE) {
           tally(here, after, before.rgb);
         }
       }
     }
-    past.rgb += here.change / max(here.count, 1.0) * clamp((deviations(here) - DRIFT_START_SIGMA) / (DRIFT_END_SIGMA - DRIFT_START_SIGMA), 0.0, 1.0);
+    past.rgb += here.change / max(here.count, 1.0) *
+                clamp((deviations(here) - DRIFT_START_SIGMA) / (DRIFT_END_SIGMA - DRIFT_START_SIGMA), 0.0, 1.0);
     vec3 share = abs(around.change) / max(max(abs(around.now), abs(around.past)), vec3(1e-37));
-    vec3 lost = clamp((deviations(around) - DRIFT_END_SIGMA) / (RESET_SIGMA - DRIFT_END_SIGMA), 0.0, 1.0) * clamp((share - RESET_START_SHARE) / (RESET_END_SHARE - RESET_START_SHARE), 0.0, 1.0);
+    vec3 lost = clamp((deviations(around) - DRIFT_END_SIGMA) / (RESET_SIGMA - DRIFT_END_SIGMA), 0.0, 1.0) *
+                clamp((share - RESET_START_SHARE) / (RESET_END_SHARE - RESET_START_SHARE), 0.0, 1.0);
     weight *= 1.0 - max(max(lost.r, lost.g), lost.b);
   }
   float all = weight + gathers;

@@ -5,7 +5,8 @@
 //   a    number of gathers that it is the mean of: 0 where that frame did not show the surface, -1 where there is none
 //
 // A surface's texel in the frame before follows from its position in the world or, if the object moves, from EEVEE's
-// Vector pass. The history is interpolated bilinearly between those of the four texels around that show the same surface.
+// Vector pass. The history is interpolated bilinearly between those of the four texels around that show the same
+// surface.
 
 #define MIN_MOTION 0.5        // texels; more than this is object motion, not camera motion
 #define SAME_HEIGHT 1.0       // sides of a texel above the surface, for objects at rest
@@ -59,8 +60,8 @@ void main()
       if (!is_inside(tap, level_size(0))) {
         continue;
       }
-      Surfel surfel = unpack_surfel_of(texelFetch(past_surfels, tap, 0), options.past_offset + options.past_scale * vec2(tap),
-                                       options.past_scale);
+      Surfel surfel = unpack_surfel_of(texelFetch(past_surfels, tap, 0),
+                                       options.past_offset + options.past_scale * vec2(tap), options.past_scale);
       if (surfel.area <= 0.0) {
         continue;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Show: a picture of any size over a region of `extent` pixels, interpolated between its texels. The blend mode adds it to
-// the region.
+// Show: a picture of any size over a region of `extent` pixels, interpolated between its texels. The blend mode adds it
+// to the region.
 
 void main()
 {

@@ -239,16 +239,16 @@ def test_polygons_and_lights_change_nothing_that_is_done(light, rooms, monkeypat
     """The same dispatches with the same parameters, over textures of the same sizes and formats."""
     plain, work = light.device.dispatch, []
 
-    def dispatch(name, block, textures, *rest):
+    def dispatch(name, textures, groups, **named):
         work.append(
             (
                 name,
-                block.tobytes(),
-                *(argument for argument in rest if not callable(argument)),
+                groups,
+                *((key, np.asarray(value).tobytes()) for key, value in named.items()),
                 *((key, image.width, image.height, image.format) for key, image in textures.items()),
             )
         )
-        return plain(name, block, textures, *rest)
+        return plain(name, textures, groups, **named)
 
     monkeypatch.setattr(light.device, "dispatch", dispatch)
     monkeypatch.setattr(light.device, "wait", lambda target: None)

@@ -23,20 +23,20 @@ WATCHED = {
     CALL: ("host.main_thread", "_make"),
     "save passes": ("scene.passes", "save"),
     "load passes": ("scene.passes", "load"),
-    "wait": ("light.device", "wait"),
-    "compile": ("light.device", "shader"),
-    "read back": ("light.device", "read"),
+    "wait": ("gather.device", "wait"),
+    "compile": ("gather.device", "shader"),
+    "read back": ("gather.device", "read"),
     "hand back": ("render.engine", "AfterlightEngine", "_hand_back"),
 }
 OF_METHOD = {
-    "PAPER": {name: ("light.paper", name) for name in ("upload", "pack", "merge", "gather", "upsample", "composite")},
+    "PAPER": {name: ("gather.paper", name) for name in ("upload", "pack", "merge", "gather", "upsample", "composite")},
     "RADIOSITY": {
         "place views": ("render.views_engine", "AfterlightScout", "_place"),
         "save views": ("compositor.view_scenes", "save"),
     }
     | {
-        name: ("light.radiosity", name)
-        for name in ("look", "upload", "pack", "radiate", "draw_table", "draw", "composite")
+        name: ("gather.radiosity", name)
+        for name in ("build_records", "upload", "pack", "radiate", "emitter_table", "sample_emitters", "composite")
     },
 }
 

@@ -87,8 +87,8 @@ def long_gather(width=640, height=360):
 
 def into_the_gather(window):
     """Render, until it is in the middle of long_gather()."""
-    window.value("watch('gather', 'light.paper', 'gather')")
-    window.value("watch('gather', 'light.radiosity', 'draw')")
+    window.value("watch('gather', 'gather.paper', 'gather')")
+    window.value("watch('gather', 'gather.radiosity', 'sample_emitters')")
     window.start_render()
     window.wait("'gather' in running()", 120)
     time.sleep(1)

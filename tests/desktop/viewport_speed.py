@@ -28,18 +28,18 @@ CASES = (
 # What is timed: a stage, the module of the extension, and the names in it. A stage has what those within it do not.
 STAGES = (
     ("passes", "viewport.offscreen", "Film.draw"),
-    ("split", "light.interactive", "split"),
-    ("views, emitters", "light.interactive", "look"),
-    ("surfels", "light.interactive", "pack"),
-    ("pyramid", "light.interactive", "merge"),
-    ("gather", "light.interactive", "gather"),
-    ("gather", "light.interactive", "gather_all"),
-    ("table of draws", "light.radiosity", "draw_table"),
-    ("history", "light.temporal", "History.go_on"),
-    ("smooth", "light.interactive", "smooth"),
-    ("smooth", "light.interactive", "upsample"),
-    ("composite", "light.interactive", "composite"),
-    ("mean", "light.interactive", "Mean.add"),
+    ("split", "gather.interactive", "split"),
+    ("views, emitters", "gather.interactive", "build_records"),
+    ("surfels", "gather.interactive", "pack"),
+    ("pyramid", "gather.interactive", "merge"),
+    ("gather", "gather.interactive", "gather"),
+    ("gather", "gather.interactive", "gather_bounces"),
+    ("table of emitters", "gather.radiosity", "emitter_table"),
+    ("history", "gather.temporal", "History.go_on"),
+    ("smooth", "gather.interactive", "smooth"),
+    ("smooth", "gather.interactive", "upsample"),
+    ("composite", "gather.interactive", "composite"),
+    ("mean", "gather.interactive", "Mean.add"),
     ("place views", "viewport.view_cache", "Further.place"),
 )
 EEVEE = "passes", "split"
@@ -52,7 +52,7 @@ def time_stages(stages):
     import time
 
     root = "bl_ext.user_default.afterlight.addon."
-    device = importlib.import_module(root + "light.device")
+    device = importlib.import_module(root + "gather.device")
     names["spent"], running = [], []
 
     def settled():
