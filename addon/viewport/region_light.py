@@ -198,8 +198,8 @@ class Region:
 
 
 def _settings(stage):
-    """gather.RadiositySettings or gather.PaperSettings of the scene. Smoothing takes the place of Blender's Denoise node,
-    which is in the compositor."""
+    """gather.RadiositySettings or gather.PaperSettings of the scene. Smoothing stands in for Blender's Denoise node,
+    which the compositor has."""
     chosen = properties.light_settings(stage.scene.afterlight, stage.scene.frame_current)
     smoothed = stage.scene.afterlight.denoise != "NONE"
     return replace(chosen, smooth=smoothed) if isinstance(chosen, gather.RadiositySettings) else chosen

@@ -39,7 +39,7 @@ def measure(afterlight, scene, passes, camera, settings, cycles_direct, one_boun
     against the next one, "share": mean |difference| over the mean of the reference, and "gain": mean difference over
     the mean of the reference. The gains of the causes add up to the total's; the last row is the noise of the rays.
 
-    passes, camera: of the plain EEVEE frame that `scene` gives. settings: light.PaperSettings. cycles_direct: (H, W, 3),
+    passes, camera: of the plain EEVEE frame of `scene`. settings: light.PaperSettings. cycles_direct: (H, W, 3),
     Diffuse Direct without albedo. one_bounce, n_bounces: (H, W, 3) indirect radiance. mask: (H, W), pixels that count.
     """
     light = importlib.import_module(f"{afterlight.__name__}.addon.gather")

@@ -1,10 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light off glossy surfaces: the lobe and its draws, rays against exact ones, the furnace, the sum over a room,
+"""The specular light: the lobe and its samples, rays against exact ones, the furnace, the sum over a room,
 the world."""
 
 import numpy as np
 import pytest
-from test_gather_views import FRAMES, SOLIDS, WORLD, base_receivers, draws, mostly, room_views, rows, sent_by, stages
+from test_gather_views import (
+    FRAMES,
+    SOLIDS,
+    WORLD,
+    base_receivers,
+    mostly,
+    radiosity,
+    room_views,
+    rows,
+    sent_by,
+    stages,
+)
 
 import room_fixtures as rooms
 from reference import glossy as glossy_64
@@ -21,8 +32,8 @@ def numbers(count, seed=0):
 @pytest.mark.parametrize("alpha", [0.01, 0.25, 0.64])
 @pytest.mark.parametrize("outgoing", OUTGOING)
 def test_the_lobe_integrates_to_its_albedo(outgoing, alpha):
-    """The mean weight of drawn directions is the integral of the BRDF times the cosine: no lobe sends back more than
-    it gets. And draws lie where the lobe has its light: their mean direction is the integral's."""
+    """The mean weight of sampled directions is the integral of the BRDF times the cosine: no lobe sends back more than
+    it gets. And samples follow the lobe: their mean direction is the integral's."""
     outgoing = np.array(outgoing) / np.linalg.norm(outgoing)
     facets, facet_steradians = glossy_64.hemisphere(1500, alpha)
     cosine = facets @ outgoing
@@ -51,7 +62,7 @@ def gloss_of(light, passes, color=0.5, roughness=0.3):
 
 def gathered(light, views, gloss, world=None, **changes):
     """The picture of the glossy light, top row last."""
-    light.gather_views(views, draws(light, **dict(groups=32) | changes), world, gloss=gloss)
+    light.gather_views(views, radiosity(light, **dict(groups=32) | changes), world, gloss=gloss)
     return gloss.picture
 
 
@@ -68,7 +79,7 @@ def test_diffuse_and_gloss_together_send_no_more_than_they_get(light):
     """Of a surface whose colours sum to 0.9: eight bounces of a furnace whose walls keep a tenth."""
     views = rooms.box_views(light, albedo=0.6)
     gloss = gloss_of(light, views[0].load_passes(), 0.3, 0.4)
-    both = light.gather_views(views, draws(light, bounces=8), gloss=gloss) + gloss.picture
+    both = light.gather_views(views, radiosity(light, bounces=8), gloss=gloss) + gloss.picture
     own, sent = 1.0, 1 / (1 - 0.6)  # of each wall, and with all its diffuse bounces
     assert abs(both.mean() / (0.9 * sent) - 1) < 0.02
     assert (both + own).mean() < sent / (1 - 0.3) * 1.01  # no more than if gloss were passed on as well
@@ -102,7 +113,7 @@ def reflected(light, base, table, textures, roughness, rays, seed=0):
     surface[...] = roughness, 1, 0, 0
     target, shine = light.device.texture(across, up), light.device.texture(across, up, data=surface)
     textures = textures | {"surfels": base.surfels, "gloss": shine}
-    light.glossy.reflect(base, table, draws(light, groups=2 * rays, seed=seed), textures, target)
+    light.glossy.reflect(base, table, radiosity(light, groups=2 * rays, seed=seed), textures, target)
     return np.array(target.read(), float).reshape(-1, 4)
 
 
@@ -129,9 +140,9 @@ def shifts_of(across, up, seed=0):
 @pytest.mark.parametrize("roughness", [0.05, 0.5])
 @pytest.mark.parametrize("world", [0, 1])
 def test_reflections_agree_with_float64(light, roughness, world):
-    """Ray by ray: the same draws, the same hits and the same radiance, but for rays that graze an edge."""
+    """Ray by ray: the same samples, the same hits and the same radiance, but for rays that graze an edge."""
     views = room_views(light)
-    staged, base, textures, grids, emitters, sent, places, normals, areas = staged_base(light, views, draws(light))
+    staged, base, textures, grids, emitters, sent, places, normals, areas = staged_base(light, views, radiosity(light))
     staged.table["world"][:, :3] = world * WORLD
     measured = reflected(light, base, staged.table, textures, roughness, 3)
     _, _, across, up = base.boxes[0]
@@ -156,7 +167,7 @@ def test_reflections_agree_with_float64(light, roughness, world):
 
 @pytest.mark.parametrize("name", ["random", "room"])
 def test_smoothing_agrees_with_float64(light, name):
-    views, chosen = FRAMES[name](light), draws(light)
+    views, chosen = FRAMES[name](light), radiosity(light)
     base, level, _, _ = base_receivers(light, views, chosen)
     up, across = level.area.shape
     rng = np.random.default_rng(5)
@@ -212,7 +223,7 @@ def all_around(light, size=(96, 96)):
 def test_mirrors_meet_what_exact_rays_meet(light):
     """How far the rays of a mirror go in a box with two solids."""
     views = all_around(light)
-    chosen = draws(light, start=1)
+    chosen = radiosity(light, start=1)
     staged, base, textures, _, _, _, places, normals, areas = staged_base(light, views, chosen)
     measured = reflected(light, base, staged.table, textures, 0.0, 1)[:, 3]
     eye = views_64.direction(views_64.to_camera(staged.cameras[0], places))
@@ -345,8 +356,8 @@ def test_only_what_shines_gets_light(light):
 
 def test_the_diffuse_light_does_not_depend_on_gloss(light):
     views = rooms.box_views(light, radiance=rooms.lamp)
-    plain = light.gather_views(views, draws(light))
-    shining = light.gather_views(views, draws(light), gloss=gloss_of(light, views[0].load_passes()))
+    plain = light.gather_views(views, radiosity(light))
+    shining = light.gather_views(views, radiosity(light), gloss=gloss_of(light, views[0].load_passes()))
     np.testing.assert_array_equal(plain, shining)
 
 
@@ -356,7 +367,7 @@ def test_the_diffuse_light_does_not_depend_on_gloss(light):
 )
 @pytest.mark.parametrize("size, start", [((640, 360), 2), ((960, 544), 4), ((400, 300), 1)])
 def test_memory_is_what_the_textures_take(light, monkeypatch, size, start, shines, averages, gathers):
-    """The whole way with textures that only count themselves."""
+    """A whole frame, with textures that only count themselves."""
     held = most = 0
 
     class Texture:
@@ -386,7 +397,7 @@ def test_memory_is_what_the_textures_take(light, monkeypatch, size, start, shine
     passes = light.Passes(plane, *[(plane,) * 3] * 4)
     camera = light.Camera(np.eye(3), np.ones(2), np.zeros(2))
     views = [light.View(passes, camera, lambda: passes)] * 3
-    chosen = draws(light, start=start, bounces=2, gathers=gathers)
+    chosen = radiosity(light, start=start, bounces=2, gathers=gathers)
     past = light.History() if averages else None
     for _ in range(2):
         most = held

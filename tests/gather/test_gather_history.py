@@ -39,7 +39,7 @@ def noise(seed, shape=(SIZE[1] // START, SIZE[0] // START)):
     return made
 
 
-def known_by(light, past, view, base):
+def history_of(light, past, view, base):
     table = light.view_layout.view_table([view], SIZE, light.RadiositySettings(start=START))
     return light.device.read(light.temporal.reproject(past, base, view.camera, view.load_passes().motion, table))
 
@@ -48,21 +48,23 @@ def known_by(light, past, view, base):
 
 
 @pytest.mark.parametrize("across", [None, 2.5])
-def test_what_is_known_agrees_with_float64(light, across):
+def test_the_history_agrees_with_float64(light, across):
     """Of a corner with a solid before it, seen from a place and in a direction that have changed."""
     before, after = (rooms.view_of(light, camera(light, step, across), SIZE, solids=[SOLID]) for step in (0, 1))
     past, past_level = remembered(light, before, noise(1))
     base, level = base_of(light, after)
-    found = known_by(light, past, after, base)
+    found = history_of(light, past, after, base)
     expected = history_64.reproject(level, after.camera, past_level, before.camera, noise(1), START)
-    assert 0.7 < (found[..., 3] > 0).mean() < 0.999, "most is known, and not what was hidden or out of the picture"
+    assert 0.7 < (found[..., 3] > 0).mean() < 0.999, (
+        "most has a history, and not the surfaces that were hidden or out of the picture"
+    )
     near = np.abs(found - expected).max(-1) < 2e-3
     assert near.mean() > 0.995, "a texel on the edge of two may fall to either"
 
 
 def test_what_moves_is_looked_up_where_it_was(light):
-    """The solid moves, the camera stays. Its motion is told by a pass; without it nothing is known of what moved
-    sideways."""
+    """The solid moves, the camera stays. Its motion is in a pass; without it surfaces that moved sideways
+    have no history."""
     still = camera(light)
     shift = np.array((0.1, 0.05, 0.0))
     before = rooms.view_of(light, still, SIZE, solids=[tuple(np.array(SOLID) - shift)])
@@ -78,7 +80,7 @@ def test_what_moves_is_looked_up_where_it_was(light):
     after.load_passes().motion = tuple(np.ascontiguousarray(motion[::-1, :, axis]) for axis in range(2))
     past, past_level = remembered(light, before, noise(2))
     base, level = base_of(light, after)
-    found = known_by(light, past, after, base)
+    found = history_of(light, past, after, base)
     rows, columns = (np.arange(START // 2, side, START) for side in motion.shape[:2])
     expected = history_64.reproject(
         level, still, past_level, still, noise(2), START, motion[np.ix_(rows, columns)] / START
@@ -88,19 +90,19 @@ def test_what_moves_is_looked_up_where_it_was(light):
     assert (found[inside, 3] > 0).mean() > 0.8
 
 
-@pytest.mark.parametrize("may_drift", [False, True])
-def test_the_mean_agrees_with_float64(light, may_drift):
+@pytest.mark.parametrize("allows_drift", [False, True])
+def test_the_mean_agrees_with_float64(light, allows_drift):
     view = rooms.view_of(light, camera(light), SIZE, solids=[SOLID])
     base, level = base_of(light, view)
-    known, now = noise(3), noise(4)
-    known[..., :3] += np.array((0.0, 0.8, -0.1), np.float32)  # no drift, one that is sure, one that may be
-    known[:, :5, 3], known[:3, :, 3] = 0, -1
-    texture = [light.device.texture(*known.shape[1::-1], data=each) for each in (known, now)]
-    found = light.device.read(light.temporal.accumulate(base, *texture, 2, 3, drift=may_drift))
-    expected = history_64.accumulate(level, known, now[..., :3], 2, 3, may_drift)
+    history, now = noise(3), noise(4)
+    history[..., :3] += np.array((0.0, 0.8, -0.1), np.float32)  # no drift, one that is sure, one that may be
+    history[:, :5, 3], history[:3, :, 3] = 0, -1
+    texture = [light.device.texture(*history.shape[1::-1], data=each) for each in (history, now)]
+    found = light.device.read(light.temporal.accumulate(base, *texture, 2, 3, drift=allows_drift))
+    expected = history_64.accumulate(level, history, now[..., :3], 2, 3, allows_drift)
     assert np.abs(found - expected).max() < 2e-3
-    assert history_64.kept(level, known, now[..., :3]).min() < 0.5
-    sure = history_64.drift(level, known, now[..., :3])
+    assert history_64.kept(level, history, now[..., :3]).min() < 0.5
+    sure = history_64.drift(level, history, now[..., :3])
     assert np.abs(sure).mean((0, 1))[1] > 0.2 > 10 * np.abs(sure).mean((0, 1))[0]
 
 
@@ -113,7 +115,7 @@ def shot(light, step, radiance=rooms.lamp, solids=()):
     return [main, *rooms.box_views(light, SIZE, radiance=radiance, solids=solids)]
 
 
-def draws(light, seed=0, **changes):
+def radiosity(light, seed=0, **changes):
     return light.RadiositySettings(
         **dict(start=START, bounces=1, groups=4, candidates=4, visibility=False, seed=seed) | changes
     )
@@ -133,7 +135,7 @@ def run(light, seed, frames, **changes):
     past = light.History()
     for frame in range(frames):
         light.gather_views(
-            shot(light, min(frame, frames - 2)), draws(light, 1000 * seed + 7919 * frame, **changes), history=past
+            shot(light, min(frame, frames - 2)), radiosity(light, 1000 * seed + 7919 * frame, **changes), history=past
         )
     return past
 
@@ -142,12 +144,15 @@ def test_gathers_of_one_frame_are_averaged(light):
     """The noise of six is a sixth, and the mean the same."""
     views = shot(light, 0)
     ones, sixes = (
-        [light.gather_views(views, draws(light, 1000 * seed, gathers=count)) for seed in range(12)] for count in (1, 6)
+        [light.gather_views(views, radiosity(light, 1000 * seed, gathers=count)) for seed in range(12)]
+        for count in (1, 6)
     )
     share = np.var(sixes, axis=0).mean() / np.var(ones, axis=0).mean()
     assert share == pytest.approx(1 / 6, rel=0.25)
     assert np.mean(sixes) == pytest.approx(np.mean(ones), rel=0.01)
-    assert np.array_equal(light.gather_views(views, draws(light, gathers=1)), light.gather_views(views, draws(light)))
+    assert np.array_equal(
+        light.gather_views(views, radiosity(light, gathers=1)), light.gather_views(views, radiosity(light))
+    )
 
 
 def test_noise_falls_eightfold_and_nothing_else_changes(light):
@@ -161,7 +166,7 @@ def test_noise_falls_eightfold_and_nothing_else_changes(light):
         past = light.History()
         light.gather_views(
             shot(light, frames - 2),
-            draws(light, 1000 * seed + 7919 * (frames - 1), groups=12, candidates=8),
+            radiosity(light, 1000 * seed + 7919 * (frames - 1), groups=12, candidates=8),
             history=past,
         )
         raw.append(lit(past))  # nine gathers
@@ -175,31 +180,31 @@ def test_noise_falls_eightfold_and_nothing_else_changes(light):
 
 def test_a_frame_without_a_history_makes_up_for_it(light):
     first = light.History()
-    light.gather_views(shot(light, 0), draws(light), history=first)
+    light.gather_views(shot(light, 0), radiosity(light), history=first)
     assert (gathers(first) == light.temporal.REBUILT).all()
-    light.gather_views(shot(light, 0), draws(light, 7919, groups=12, candidates=8), history=first)
+    light.gather_views(shot(light, 0), radiosity(light, 7919, groups=12, candidates=8), history=first)
     assert (gathers(first) == light.temporal.FRAMES).mean() > 0.99, "noise passes for change hardly ever"
     turned = [
         light.View(view.load_passes(), view.camera) for view in shot(light, 0)[1:]
     ]  # a cut to what was out of the picture
-    light.gather_views(turned[1:2] + turned, draws(light, 2), history=first)
+    light.gather_views(turned[1:2] + turned, radiosity(light, 2), history=first)
     assert (gathers(first) == light.temporal.REBUILT).all()
 
 
 def test_what_comes_into_sight_begins_anew(light):
-    """A solid leaves; the wall behind it is known by one gather alone, and holds nothing of the solid's light."""
+    """A solid leaves; the wall behind it has a history of one gather alone, and holds nothing of the solid's light."""
     past = light.History()
     for frame in range(3):
-        light.gather_views(shot(light, 0, solids=[SOLID]), draws(light, frame), history=past)
+        light.gather_views(shot(light, 0, solids=[SOLID]), radiosity(light, frame), history=past)
     hidden = rooms.trace(camera(light), SIZE, solids=[SOLID])[0] < rooms.trace(camera(light), SIZE)[0] - 0.05
-    light.gather_views(shot(light, 0), draws(light, 9), history=past)
+    light.gather_views(shot(light, 0), radiosity(light, 9), history=past)
     fresh = gathers(past)[hidden]
     assert hidden.sum() > 100 and (fresh == 1).mean() > 0.85 and (gathers(past) > 1).mean() > 0.6
 
 
 @pytest.mark.parametrize("factor", [0.2, 3.0])
 def test_a_lamp_that_is_switched_arrives(light, factor):
-    """95 % of the change of the mean within four frames, at the noise of few draws."""
+    """95 % of the change of the mean within four frames, at the noise of few groups."""
 
     def switched(place, normal):
         return factor * rooms.lamp(place, normal)
@@ -209,7 +214,7 @@ def test_a_lamp_that_is_switched_arrives(light, factor):
     after = np.mean([lit(run_once(light, switched, seed)).mean() for seed in range(3)])
     arrived = []
     for frame in range(4):
-        light.gather_views(shot(light, 3, switched), draws(light, 50_000 + frame, groups=8), history=past)
+        light.gather_views(shot(light, 3, switched), radiosity(light, 50_000 + frame, groups=8), history=past)
         arrived.append((lit(past).mean() - before) / (after - before))
         assert (gathers(past) > 4).mean() > 0.98, "where much changes as much is gathered anew: it is as calm as before"
     assert arrived[0] > 0.95 and max(arrived) < 1.02, arrived
@@ -221,12 +226,12 @@ def test_small_things_do_not_hold_old_light(light):
     small = [((x, y, -1.0), (x + 0.03, y + 0.03, 0.5)) for x, y in ((0.1, -0.2), (0.3, 0.1), (-0.1, 0.2))]
     past = light.History()
     for frame in range(4):
-        light.gather_views(shot(light, 0, solids=small), draws(light, frame, groups=8), history=past)
+        light.gather_views(shot(light, 0, solids=small), radiosity(light, frame, groups=8), history=past)
     thin = rooms.trace(camera(light), SIZE, solids=small)[0] < rooms.trace(camera(light), SIZE)[0] - 0.05
     before = lit(past)[thin].mean()
     light.gather_views(
         shot(light, 0, lambda place, normal: 0.01 * rooms.lamp(place, normal), small),
-        draws(light, 9, groups=8),
+        radiosity(light, 9, groups=8),
         history=past,
     )
     assert thin.sum() > 20 and lit(past)[thin].mean() < 0.05 * before
@@ -234,15 +239,15 @@ def test_small_things_do_not_hold_old_light(light):
 
 def run_once(light, radiance, seed):
     past = light.History()
-    light.gather_views(shot(light, 3, radiance), draws(light, 999 + seed, groups=8), history=past)
+    light.gather_views(shot(light, 3, radiance), radiosity(light, 999 + seed, groups=8), history=past)
     return past
 
 
 def test_what_can_not_be_looked_up_is_left(light):
     """Another resolution or another kind of camera makes a new history, without an error."""
     past = light.History()
-    light.gather_views(shot(light, 0), draws(light), history=past)
+    light.gather_views(shot(light, 0), radiosity(light), history=past)
     for size, across in (((40, 30), None), ((40, 30), 2.0)):
         other = rooms.camera_at(light, EYE, (1, 0.8, -0.3), size, across=across)
-        light.gather_views([rooms.view_of(light, other, size)], draws(light), history=past)
+        light.gather_views([rooms.view_of(light, other, size)], radiosity(light), history=past)
         assert gathers(past).shape == size[::-1] and (gathers(past) == light.temporal.REBUILT).all()

@@ -16,7 +16,7 @@ TURNED = np.array([[0, 1, 0], [-0.6, 0, 0.8], [0.8, 0, 0.6]])
 SURFACE = np.s_[..., :3]
 
 
-def draws(light, **changes):
+def radiosity(light, **changes):
     return light.RadiositySettings(**dict(start=2, bounces=1) | changes)
 
 
@@ -120,7 +120,7 @@ def mostly(measured, expected, relative=1e-4, outliers=0.003):
 def test_depth_maps(light, frame, monkeypatch, step):
     """The middle pixel's depth, and how far its surface reaches within the texel."""
     monkeypatch.setattr(light.view_layout, "DEPTHS_ACROSS", frame[0].load_passes().size[0] // step)
-    staged = stages(light, frame, draws(light))
+    staged = stages(light, frame, radiosity(light))
     width, height = (int(side) for side in staged.table["depth_size"])
     count = int(staged.table["count"])
     assert (staged.table["depth_step"], count) == (step, len(frame))
@@ -135,7 +135,7 @@ def test_depth_maps(light, frame, monkeypatch, step):
 def test_records_agree_with_float64(light, frame, monkeypatch, kind, step):
     """Place, areas, mean normal, radiance and albedo of every block, and with the areas the shares between views."""
     monkeypatch.setattr(light.view_layout, "DEPTHS_ACROSS", frame[0].load_passes().size[0] // step)
-    staged = stages(light, frame, draws(light))
+    staged = stages(light, frame, radiosity(light))
     measured = rows(getattr(staged, kind), light.view_layout.count_of(staged.table, kind), 4)
     for index in range(len(frame)):
         first, across, up, side = staged.grid(kind, index)
@@ -180,7 +180,7 @@ def test_shares_of_a_surface_sum_to_one(light):
 
 
 def own_area(light, views):
-    staged = stages(light, views, draws(light))
+    staged = stages(light, views, radiosity(light))
     return rows(staged.emitters, light.view_layout.count_of(staged.table, "emitters"), 4)[:, 0, 3].sum()
 
 
@@ -197,7 +197,7 @@ def test_what_emitters_send(light, name):
     """Radiance: the emitter's own, and albedo / pi of its receiver's irradiance; none where that is no finite
     number."""
     views = FRAMES[name](light)
-    staged = stages(light, views, draws(light))
+    staged = stages(light, views, radiosity(light))
     count = light.view_layout.count_of(staged.table, "receivers")
     irradiance = np.random.default_rng(3).random(
         (light.view_layout.rows_of(staged.table, "receivers"), light.shader_interface.RECORDS_WIDTH, 4)
@@ -219,10 +219,10 @@ def test_what_emitters_send(light, name):
     assert np.abs(measured - expected).max() < 1e-5 * np.abs(expected).max()
 
 
-def test_the_table_holds_emitters_as_often_as_their_chance(light, monkeypatch):
-    """By power and area. Each entry is drawn from its own part of the whole: no count is off by more than two."""
+def test_the_table_holds_emitters_in_proportion_to_their_pdf(light, monkeypatch):
+    """By power and area. Each entry is sampled from its own part of the whole: no count is off by more than two."""
     views = room_views(light)
-    staged = stages(light, views, draws(light))
+    staged = stages(light, views, radiosity(light))
     sent = sent_by(light, staged)
     exact = rows(sent, light.view_layout.count_of(staged.table, "emitters"))[:, 0]
     table, factors = light.radiosity.emitter_table(sent, staged.table, 5)
@@ -298,9 +298,9 @@ def surfaces(views, per_view=60, seed=2):
     return np.concatenate(places), np.concatenate(normals)
 
 
-def test_blocked_ways_agree_with_float64(light, frame):
-    """4,000 ways between surfaces, of which many are blocked: the same answers, but for rounding."""
-    staged = stages(light, frame, draws(light))
+def test_blocked_segments_agree_with_float64(light, frame):
+    """4,000 segments between surfaces, of which many are blocked: the same answers, but for rounding."""
+    staged = stages(light, frame, radiosity(light))
     places, _ = surfaces(frame)
     rng = np.random.default_rng(1)
     start, end = (places[rng.integers(0, len(places), 4000)] for _ in range(2))
@@ -346,11 +346,11 @@ AWAY = ((-1.8, 0.1, -0.2), (-1, 0, 0))
         ([LEFT, AWAY], 0.01, 1),
         ([AWAY], 0.2, 0),
     ],
-)  # nobody sees the wall: nothing is known to stand there
+)  # no view shows the wall: it blocks nothing
 def test_a_wall_between_two_places(light, eyes, wall, blocked):
-    """Ways through the wall, from behind it and from in front of it, and ways above it, which are free."""
+    """Segments through the wall, from behind it and from in front of it, and segments above it, which are free."""
     views = hall(light, eyes, wall)
-    staged = stages(light, views, draws(light))
+    staged = stages(light, views, radiosity(light))
     rng = np.random.default_rng(0)
     left, right = (
         rng.uniform((-1.2, -1, -1), (-0.6, 1, 0.3), (200, 3)) * (side, 1, 1) - views[0].camera.position
@@ -365,11 +365,11 @@ def test_a_wall_between_two_places(light, eyes, wall, blocked):
 
 
 @pytest.mark.parametrize("steps, blocked", [(0.2, 0), (1.5, 1), (3, 1)])
-def test_the_ends_of_a_way_do_not_count(light, steps, blocked):
-    """A hundredth at each, which is a quarter of a step: a way that ends, or starts, less than that behind a wall is
-    free; one that has a place there that counts, and another before the wall, is blocked."""
+def test_the_ends_of_a_segment_do_not_count(light, steps, blocked):
+    """A hundredth at each, which is a quarter of a step: a segment that ends, or starts, less than that behind a wall
+    is free; one with a point there that counts, and another in front of the wall, is blocked."""
     views = rooms.box_views(light, towards=rooms.AXES[:1])  # looks at the wall x = 1 from 0.9 m
-    staged = stages(light, views, draws(light))
+    staged = stages(light, views, radiosity(light))
     assert light.radiosity.SHADOW_STEPS == 24
     jitter = np.concatenate([np.arange(0.005, 1, 0.01)] * 5)
     sides = np.repeat(np.linspace(-0.3, 0.3, 5), 100)
@@ -381,8 +381,8 @@ def test_the_ends_of_a_way_do_not_count(light, steps, blocked):
         assert is_blocked(light, staged, start, end, jitter).mean() == blocked
 
 
-def ways_between(views, count=16_000, per_view=300):
-    """(starts, ends) of random ways between surfaces that face each other, relative to the main camera."""
+def segments_between(views, count=16_000, per_view=300):
+    """(starts, ends) of random segments between surfaces that face each other, relative to the main camera."""
     places, normals = surfaces(views, per_view)
     start, end = np.random.default_rng(4).integers(0, len(places), (2, count))
     path = places[end] - places[start]
@@ -391,12 +391,12 @@ def ways_between(views, count=16_000, per_view=300):
     return places[start[facing]], places[end[facing]]
 
 
-def test_in_a_closed_box_all_ways_are_free(light):
+def test_in_a_closed_box_all_segments_are_free(light):
     """All views see it from inside: nothing hides anything, on edges and in corners either."""
     views = rooms.box_views(light)
-    start, end = ways_between(views)
+    start, end = segments_between(views)
     assert not is_blocked(
-        light, stages(light, views, draws(light)), start, end, np.random.default_rng(5).random(len(start))
+        light, stages(light, views, radiosity(light)), start, end, np.random.default_rng(5).random(len(start))
     ).any()
 
 
@@ -448,13 +448,12 @@ def colonnade(light, size=(128, 72)):
         pytest.param(lambda light: halved(light, 0.01), 0.02, 0.08, id="1 cm"),
     ],
 )
-def test_ways_against_exact_rays(light, made, most_blocked, most_free):
-    """Of the ways between seen surfaces that are free, next to none is taken for blocked. Of the blocked ones, few are
-    taken for free: they graze an edge, what hides stands within a step of their end, or no view shows where they go
-    through it."""
+def test_segments_against_exact_rays(light, made, most_blocked, most_free):
+    """Of the free segments between visible surfaces, next to none is taken for blocked. Of the blocked ones, few are
+    taken for free: they graze an edge, are blocked within a step of their end, or no view shows where they enter."""
     views, solids = made(light)
-    staged = stages(light, views, draws(light))
-    start, end = ways_between(views)
+    staged = stages(light, views, radiosity(light))
+    start, end = segments_between(views)
     origin = views[0].camera.position
     true, jitter = rooms.is_hidden(start + origin, end + origin, solids), np.random.default_rng(5).random(len(start))
     measured = is_blocked(light, staged, start, end, jitter)
@@ -514,7 +513,7 @@ def test_samples_are_unbiased(light, monkeypatch, name, groups, candidates, visi
     monkeypatch.setattr(light.radiosity, "ENTRIES", 1 << 12)  # whatever the table's size
     monkeypatch.setattr(light.view_layout, "EMITTER", 2)  # nor does theirs matter, but for the seconds of the sum
     views = FRAMES[name](light, (24, 18))
-    chosen = draws(light, groups=groups, candidates=candidates, visibility=visibility)
+    chosen = radiosity(light, groups=groups, candidates=candidates, visibility=visibility)
     staged = stages(light, views, chosen)
     staged.table["world"][:, :3] = world * WORLD
     base, level, place, normal = base_receivers(light, views, chosen)
@@ -535,7 +534,7 @@ def test_samples_are_unbiased(light, monkeypatch, name, groups, candidates, visi
                 light,
                 staged,
                 base,
-                draws(light, groups=groups, candidates=candidates, visibility=visibility, seed=seed),
+                radiosity(light, groups=groups, candidates=candidates, visibility=visibility, seed=seed),
             )
             for seed in range(500)
         ]
@@ -557,7 +556,7 @@ def test_what_blocks_receive_is_unbiased(light, monkeypatch):
     the 27 x 3 numbers two may lie beyond 3 standard errors, none beyond 4.5; all these errors are under 1 % of the
     mean."""
     monkeypatch.setattr(light.radiosity, "ENTRIES", 1 << 12)
-    staged = stages(light, room_views(light, (24, 18)), draws(light, visibility=False))
+    staged = stages(light, room_views(light, (24, 18)), radiosity(light, visibility=False))
     count = light.view_layout.count_of(staged.table, "receivers")
     receivers = rows(staged.receivers, count, 4)
     emitters = rows(staged.emitters, light.view_layout.count_of(staged.table, "emitters"), 4)
@@ -569,7 +568,7 @@ def test_what_blocks_receive_is_unbiased(light, monkeypatch):
         target = light.device.texture(
             light.shader_interface.RECORDS_WIDTH, light.view_layout.rows_of(staged.table, "receivers")
         )
-        chosen = draws(
+        chosen = radiosity(
             light,
             visibility=False,
             seed=seed,
@@ -589,7 +588,7 @@ def test_what_blocks_receive_is_unbiased(light, monkeypatch):
 @pytest.mark.parametrize("name, world", [("random", 0), ("room", 0), ("room", 1)])
 def test_smoothing_agrees_with_float64(light, name, world):
     views = FRAMES[name](light)
-    chosen = draws(light, start=1, groups=2, candidates=2)
+    chosen = radiosity(light, start=1, groups=2, candidates=2)
     base, level, _, normal = base_receivers(light, views, chosen)
     table = light.view_layout.view_table(views, views[0].load_passes().size, chosen)
     table["world"][:, :3] = world * WORLD
@@ -605,10 +604,9 @@ def test_smoothing_agrees_with_float64(light, name, world):
 
 
 def test_a_spot_is_not_spread(light):
-    """One texel of a hundred times the light of all others is taken for a draw that hardly ever happens; two are a
-    light."""
+    """One texel of a hundred times the light of all others is taken for a firefly; two are a light."""
     views = FRAMES["room"](light)
-    chosen = draws(light, start=1)
+    chosen = radiosity(light, start=1)
     base, level, _, _ = base_receivers(light, views, chosen)
     table = light.view_layout.view_table(views, views[0].load_passes().size, chosen)
     middle = level.area.shape[0] // 2, level.area.shape[1] // 2
@@ -631,7 +629,7 @@ def test_one_view_without_visibility_is_the_papers_sum(light):
     sums[..., 3] = 0  # without the bound of a hemisphere
     true = reference.composite(passes, guide, base, sums, camera, 1, 1.0)
     pictures = [
-        light.gather_views([light.View(passes, camera)], draws(light, start=1, visibility=False, seed=seed))
+        light.gather_views([light.View(passes, camera)], radiosity(light, start=1, visibility=False, seed=seed))
         for seed in range(4)
     ]
     assert np.mean(pictures) == pytest.approx(true.mean(), rel=0.02)
@@ -652,7 +650,10 @@ def test_furnace(light, size, albedo, bounces, within):
     0.9."""
     views = rooms.box_views(light, (size, size), albedo=albedo)
     bounced = np.mean(
-        [light.gather_views(views, draws(light, start=4, bounces=bounces, seed=100 * seed)).mean() for seed in range(4)]
+        [
+            light.gather_views(views, radiosity(light, start=4, bounces=bounces, seed=100 * seed)).mean()
+            for seed in range(4)
+        ]
     )
     assert 1 + bounced == pytest.approx(1 + series(albedo, bounces), rel=within)
     if bounces > 1:
@@ -667,7 +668,7 @@ def in_the_world(place, normal):
 def test_a_closed_room_keeps_nothing_of_the_world(light):
     """EEVEE's world shines through its walls; what the walls send while they are lit by it goes as well."""
     views = rooms.box_views(light, radiance=in_the_world)
-    picture = light.gather_views(views, draws(light, groups=128, bounces=8), WORLD)
+    picture = light.gather_views(views, radiosity(light, groups=128, bounces=8), WORLD)
     direct = np.stack(views[0].load_passes().diffuse_direct, -1)[::-1] * 0.5
     assert direct.min() > 0.02 and np.all(picture >= -1.001 * direct)
     assert picture.mean((0, 1)) == pytest.approx(-direct.mean((0, 1)), rel=0.03)
@@ -677,15 +678,15 @@ def test_a_closed_room_keeps_nothing_of_the_world(light):
 def test_the_world_lights_what_nothing_covers(light):
     """A wall alone keeps all of it, and so does a room whose surfaces hide nothing of each other by choice."""
     views = rooms.box_views(light, radiance=in_the_world)
-    alone = light.gather_views(views[:1], draws(light, bounces=2), WORLD)
+    alone = light.gather_views(views[:1], radiosity(light, bounces=2), WORLD)
     assert np.abs(alone).max() < 1e-6
-    chosen = draws(light, bounces=2, visibility=False)
+    chosen = radiosity(light, bounces=2, visibility=False)
     assert np.array_equal(light.gather_views(views, chosen, WORLD), light.gather_views(views, chosen))
 
 
 def test_furnace_everywhere(light):
     """Not in the mean alone: nine in ten pixels are within 12 % of what one bounce adds."""
-    picture = light.gather_views(rooms.box_views(light), draws(light, groups=64))
+    picture = light.gather_views(rooms.box_views(light), radiosity(light, groups=64))
     assert np.quantile(np.abs(picture / 0.5 - 1), 0.9) < 0.12
 
 
@@ -693,7 +694,7 @@ def test_the_same_camera_twice_changes_nothing(light):
     """By less than 1 %, for the mean of 4 seeds."""
     views = rooms.box_views(light, radiance=rooms.lamp, albedo=0.6)
     once, twice = (
-        np.mean([light.gather_views(seen, draws(light, bounces=2, seed=seed)).mean((0, 1)) for seed in range(4)], 0)
+        np.mean([light.gather_views(seen, radiosity(light, bounces=2, seed=seed)).mean((0, 1)) for seed in range(4)], 0)
         for seed in [0]
         for seen in (views, views + views[:3])
     )
@@ -701,8 +702,8 @@ def test_the_same_camera_twice_changes_nothing(light):
 
 
 def test_views_that_turn_by_a_pixel_change_little(light):
-    """In a hall with pillars a few texels wide, where ways are hardest to judge: all further views turn at once, and
-    blocks of 8 x 8 pixels change by little more than another seed changes them, 0.033."""
+    """In a hall with pillars a few texels wide, where visibility is hardest to judge: all further views turn at once,
+    and blocks of 8 x 8 pixels change by little more than another seed changes them, 0.033."""
     size = 320, 180
 
     def pixel_on(camera):
@@ -722,7 +723,7 @@ def test_views_that_turn_by_a_pixel_change_little(light):
             rooms.view_of(light, camera, size, room=rooms.HALL, solids=rooms.PILLARS, radiance=lamps)
             for camera in cameras
         ]
-        return light.gather_views(views, draws(light, bounces=4))[:176].reshape(22, 8, 40, 8, 3).mean((1, 3))
+        return light.gather_views(views, radiosity(light, bounces=4))[:176].reshape(22, 8, 40, 8, 3).mean((1, 3))
 
     before, after = blocks(False), blocks(True)
     assert after.mean() == pytest.approx(before.mean(), rel=0.04)
@@ -733,10 +734,10 @@ def test_an_orthographic_main_view(light):
     """Its wall in the furnace, lit by what perspective views see, and as a further view it changes nothing."""
     views = rooms.box_views(light)
     flat = rooms.view_of(light, rooms.camera_at(light, (0.2, 0.1, 0), (0, 1, 0), (64, 64), across=1.2), (64, 64))
-    picture = light.gather_views([flat, *views], draws(light, groups=32))
+    picture = light.gather_views([flat, *views], radiosity(light, groups=32))
     assert picture.mean() == pytest.approx(0.5, rel=0.02)
     mean, with_it = (
-        np.mean([light.gather_views(seen, draws(light, seed=seed)).mean() for seed in range(4)])
+        np.mean([light.gather_views(seen, radiosity(light, seed=seed)).mean() for seed in range(4)])
         for seen in (views, [*views, flat])
     )
     assert with_it == pytest.approx(mean, rel=0.01)
@@ -781,7 +782,7 @@ def test_scenes_anywhere_and_of_any_scale_look_alike(light):
     """100 km from the origin; a box of 2 mm, and one of 2,000 km: the same picture to float32."""
     flat = rooms.camera_at(light, (0.25, 0, 0), (1, 0.1, 0), (40, 27), across=1.5)
     views = [*coloured(light), rooms.view_of(light, flat, (40, 27), albedo=0.6, radiance=rooms.lamp)]
-    chosen = draws(light, bounces=2)
+    chosen = radiosity(light, bounces=2)
     picture = light.gather_views(views, chosen)
     for other in (
         moved(light, views, by=2.0**17),
@@ -794,13 +795,15 @@ def test_scenes_anywhere_and_of_any_scale_look_alike(light):
 
 def test_the_same_seed_is_the_same_picture(light):
     views = coloured(light)
-    pictures = [light.gather_views(views, draws(light, bounces=3, seed=seed)) for seed in (7, 7, 8, 7 + (1 << 32), -1)]
+    pictures = [
+        light.gather_views(views, radiosity(light, bounces=3, seed=seed)) for seed in (7, 7, 8, 7 + (1 << 32), -1)
+    ]
     assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[3])
     assert np.mean(np.any(pictures[0] != pictures[2], -1)) > 0.9 and np.isfinite(pictures[4]).all()
 
 
 def test_strength_scales_and_nothing_else(light):
-    one, half = (light.gather_views(coloured(light), draws(light, strength=strength)) for strength in (1.0, 0.5))
+    one, half = (light.gather_views(coloured(light), radiosity(light, strength=strength)) for strength in (1.0, 0.5))
     assert np.array_equal(half, one * np.float32(0.5)) and one.any()
 
 
@@ -808,7 +811,7 @@ def test_strength_scales_and_nothing_else(light):
 def test_frames_of_any_shape(light, size):
     for start in (1, 4):
         picture = light.gather_views(
-            coloured(light, size), draws(light, start=start, bounces=2, groups=2, candidates=4)
+            coloured(light, size), radiosity(light, start=start, bounces=2, groups=2, candidates=4)
         )
         assert picture.shape == (*size[::-1], 3) and picture.dtype == np.float32
         assert np.isfinite(picture).all() and picture.any()
@@ -819,17 +822,17 @@ def test_as_many_views_as_there_can_be(light):
     views = rooms.box_views(light)
     assert light.MAX_VIEWS == 10
     ten = views + rooms.box_views(light, eye=(-0.4, 0.2, 0.3), towards=rooms.AXES[:4])
-    few, many = (light.gather_views(seen, draws(light, groups=32)).mean() for seen in (views, ten))
+    few, many = (light.gather_views(seen, radiosity(light, groups=32)).mean() for seen in (views, ten))
     assert many == pytest.approx(few, rel=0.015)
 
 
-def test_the_most_draws_lose_no_light(light):
+def test_the_most_groups_lose_no_light(light):
     """Mesa's software driver ends a shader's loops after 65,535 rounds in all, and the rest of the light is missing."""
     views = rooms.box_views(light) + rooms.box_views(light, eye=(-0.4, 0.2, 0.3), towards=rooms.AXES[:4])
-    few, most = (light.gather_views(views, draws(light, groups=groups)).mean() for groups in (16, light.MAX_GROUPS))
+    few, most = (light.gather_views(views, radiosity(light, groups=groups)).mean() for groups in (16, light.MAX_GROUPS))
     assert most == pytest.approx(few, rel=0.015)
     with pytest.raises(ValueError, match="at most"):
-        draws(light, groups=light.MAX_GROUPS + 1)
+        radiosity(light, groups=light.MAX_GROUPS + 1)
 
 
 def test_views_of_nothing(light):
@@ -838,14 +841,15 @@ def test_views_of_nothing(light):
     sky = moved(light, views[:1])[0]
     sky.load_passes().depth[:] = fixtures.BACKGROUND
     assert np.array_equal(
-        light.gather_views([*views, sky], draws(light, bounces=2)), light.gather_views(views, draws(light, bounces=2))
+        light.gather_views([*views, sky], radiosity(light, bounces=2)),
+        light.gather_views(views, radiosity(light, bounces=2)),
     )
-    assert not light.gather_views([sky, *views], draws(light, bounces=2)).any()
-    assert not light.gather_views([sky], draws(light, bounces=2)).any()
+    assert not light.gather_views([sky, *views], radiosity(light, bounces=2)).any()
+    assert not light.gather_views([sky], radiosity(light, bounces=2)).any()
 
 
 def test_a_black_scene_is_black(light):
-    assert not light.gather_views(rooms.box_views(light, (20, 15), radiance=0.0), draws(light, bounces=3)).any()
+    assert not light.gather_views(rooms.box_views(light, (20, 15), radiance=0.0), radiosity(light, bounces=3)).any()
 
 
 def test_lamps_of_negative_power_take_light_away(light):
@@ -853,7 +857,7 @@ def test_lamps_of_negative_power_take_light_away(light):
 
     def sent(signs):
         views = rooms.box_views(light, (48, 48), radiance=lambda place, normal: np.ones(place.shape) * signs)
-        return light.gather_views(views, draws(light, bounces=2)).mean((0, 1))
+        return light.gather_views(views, radiosity(light, bounces=2)).mean((0, 1))
 
     plain = sent((1, 1, 1))
     assert sent((-1, -1, -1)) == pytest.approx(-plain, rel=1e-5)
@@ -872,8 +876,8 @@ def test_broken_pixels_do_not_spread(light, value):
             broken[view].load_passes().channels()[name][0][3 + 4 * number, 5 + 6 * number] = value
             absent[view].load_passes().depth[3 + 4 * number, 5 + 6 * number] = fixtures.BACKGROUND
     counted = {}
-    picture = light.gather_views(broken, draws(light, bounces=2), broken=counted)
-    expected = light.gather_views(absent, draws(light, bounces=2))
+    picture = light.gather_views(broken, radiosity(light, bounces=2), broken=counted)
+    expected = light.gather_views(absent, radiosity(light, bounces=2))
     assert counted == dict.fromkeys(names, 1)
     assert np.isfinite(picture).all()
     assert picture.mean() == pytest.approx(expected.mean(), rel=0.01)
@@ -885,7 +889,7 @@ def test_one_huge_pixel_does_not_black_out_the_picture(light, name):
     """Finite values whose bounces overflow: what is shown stays finite, and is not lost."""
     views = coloured(light)
     views[1].load_passes().channels()[name][0][10, 10] = 1e30
-    picture = light.gather_views(views, draws(light, bounces=3))
+    picture = light.gather_views(views, radiosity(light, bounces=3))
     assert np.isfinite(picture).all() and (picture[..., 1] != 0).mean() > 0.9
 
 
@@ -903,7 +907,7 @@ def test_surfaces_without_normals_send_light(light):
                 bare = view.load_passes().normal[2] == -1
                 for channel in view.load_passes().normal:
                     channel[bare] = 0
-        return light.gather_views(views, draws(light)).mean()
+        return light.gather_views(views, radiosity(light)).mean()
 
     assert lit(True) > 0.05
     assert lit(False) == pytest.approx(lit(True), rel=0.05)
@@ -913,7 +917,7 @@ def test_progress_and_cancel(light, monkeypatch):
     """Stages come in order with a share that never falls; a true answer cancels at once."""
     monkeypatch.setattr(light.device, "band", lambda _: 40 * 16 * 16 * 8)
     views, calls = coloured(light), []
-    chosen = draws(light, start=1, bounces=3)
+    chosen = radiosity(light, start=1, bounces=3)
     banded = light.gather_views(views, chosen, progress=lambda *call: bool(calls.append(call)))
     assert [stage for k, (stage, _) in enumerate(calls) if k == 0 or calls[k - 1][0] != stage] == [
         "views",
@@ -935,7 +939,7 @@ def test_progress_and_cancel(light, monkeypatch):
 
 def test_timings_name_every_stage(light):
     timings = {}
-    light.gather_views(coloured(light), draws(light, bounces=2), timings=timings)
+    light.gather_views(coloured(light), radiosity(light, bounces=2), timings=timings)
     assert list(timings) == ["views", "bounces", "gather", "upsample", "read_back"]
     assert all(seconds >= 0 for seconds in timings.values())
 
@@ -943,4 +947,4 @@ def test_timings_name_every_stage(light):
 @pytest.mark.parametrize("changes", [dict(start=3), dict(groups=0), dict(candidates=0), dict(bounces=0)])
 def test_settings_out_of_range_are_refused(light, changes):
     with pytest.raises(ValueError):
-        draws(light, **changes)
+        radiosity(light, **changes)

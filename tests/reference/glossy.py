@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light off glossy surfaces in float64 numpy, function by function as in shaders/ggx.glsl, march.glsl and
-reflect.glsl, and the lobe's integrals that they draw from."""
+"""The specular light in float64 numpy, function by function as in shaders/glossy, and the integrals over the lobe that
+it samples."""
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def smith(cosine, alpha):
 
 
 def visible_normal(outgoing, alpha, random):
-    """(..., 3) microfacets, each as often as it shows; outgoing: (..., 3), alpha: (...), random: (..., 2)."""
+    """(..., 3) samples of the distribution of visible normals; outgoing: (..., 3), alpha: (...), random: (..., 2)."""
     stretched = direction(np.concatenate([alpha[..., None] * outgoing[..., :2], outgoing[..., 2:]], -1))
     turn = 2 * np.pi * random[..., 0]
     z = (1 - random[..., 1]) * (1 + stretched[..., 2]) - stretched[..., 2]
@@ -58,8 +58,8 @@ def microfacets(cosine, alpha):
 
 
 def lobe(outgoing, towards, alpha):
-    """The BRDF of white microfacets times the cosine, sr^-1: D G2 / (4 outgoing.n). outgoing: (3,), towards: (..., 3), normal
-    z."""
+    """The BRDF of white microfacets times the cosine, sr^-1: D G2 / (4 outgoing.n). outgoing: (3,), towards: (..., 3),
+    normal z."""
     facet = direction(outgoing + towards)
     both = 1 / (1 + smith(outgoing[2], alpha) + smith(towards[..., 2], alpha))
     return np.where(towards[..., 2] > 0, microfacets(facet[..., 2], alpha) * both / (4 * outgoing[2]), 0)
@@ -109,13 +109,13 @@ def shown_span(view, start, rate, least, most):
 
 
 def is_seen(cameras, position):
-    """(n,) bool: does any view see a position free?"""
+    """(n,) bool: is a position visible in any view?"""
     found = [gap_at(view, position) for view in cameras]
     return np.any([shown & (gap > 0) for shown, gap in found], axis=0) if len(position) else np.zeros(0, bool)
 
 
 def emitter_at(view, grid, position):
-    """(n,) numbers of the emitters that a view shows at positions, -1 outside of its frame. grid: (first, across, up,
+    """(n,) numbers of the emitters that a view shows at positions, -1 outside its frame. grid: (first, across, up,
     side, step)."""
     first, across, up, side, step = grid
     projected = project(view, position)
@@ -125,7 +125,7 @@ def emitter_at(view, grid, position):
 
 
 def can_pass(view, grid, emitters, position, start, towards, goes_in):
-    """(n,) bool: can rays go in, or come out, at positions through what a view shows there?"""
+    """(n,) bool: can rays enter (goes_in), or leave, the surface that a view shows at positions?"""
     number = emitter_at(view, grid, position)
     normal, from_ = emitters[number, 1, :3], start - emitters[number, 0, :3]
     return (number >= 0) & ((dot(normal, towards) < 0) == goes_in) & ((dot(normal, from_) > 0) == goes_in)
@@ -239,8 +239,8 @@ def reflect(cameras, grids, emitters, sent, positions, normals, areas, roughness
 
 
 def smooth_gloss(level, found, gloss):
-    """(H, W, 3): a mean over the texels around on the same surface that are as rough. level: reference.Level of the
-    base; found: (H, W, 4) as reflect() gives it; gloss: (H, W, 2), roughness and how much there is."""
+    """(H, W, 3): a mean over the texels around on the same surface with the same roughness. level: reference.Level of
+    the base; found: (H, W, 4) as reflect() gives it; gloss: (H, W, 2), roughness and amount."""
     height, width = level.area.shape
     normal, rough, amount = direction(level.vector_area), gloss[..., 0], gloss[..., 1]
     shines = (level.area > 0) & (amount > 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The method in float64 numpy, function by function as in shaders/, and the all-pairs sum that it approximates.
+"""The method Paper in float64 numpy, function by function as in shaders/, and the all-pairs sum that it estimates.
 
 Images are (H, W, ...) with the bottom row first, in view space, metres. A Level is what the pyramid holds.
 """
@@ -50,7 +50,7 @@ def view_position(camera, pixel, depth):
 
 
 def texel_area(camera, pixel, depth, normal):
-    """World area behind a pixel. Perspective: z^3 du dv / |n.p|."""
+    """Surface area that a pixel shows. Perspective: z^3 du dv / |n.p|."""
     footprint = abs(camera.scale[0] * camera.scale[1])
     if camera.orthographic:
         return footprint / np.maximum(np.abs(normal[..., 2]), COSINE_FLOOR)

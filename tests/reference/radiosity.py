@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light between several views in float64 numpy, function by function as in shaders/, and the sum over all pairs of
-a receiver and an emitter that it approximates.
+"""The method Radiosity in float64 numpy, function by function as in shaders/radiosity, and the sum over all pairs of a
+receiver and an emitter that it estimates.
 
-World space has the main camera's position as its origin. An ViewCamera is what the shaders know of a view; depth maps have the
-bottom row first.
+World space has the main camera's position as its origin. A ViewCamera holds the fields of the block `views`, and the
+view's depth map, bottom row first.
 """
 
 from dataclasses import dataclass
@@ -49,7 +49,7 @@ class ViewCamera:
 
 
 def cameras_of(views, step):
-    """An ViewCamera for each view; step: pixels along the side of a depth map's texel."""
+    """A ViewCamera for each view; step: pixels along the side of a depth map's texel."""
     origin = np.asarray(views[0].camera.position, float)
     return [
         ViewCamera(
@@ -66,7 +66,7 @@ def cameras_of(views, step):
 
 
 def depths(view, step):
-    """(h, w, 2): the depth of the pixel in the middle of each step x step, and the farthest that its plane reaches at
+    """(h, w, 2): the depth of the pixel in the middle of each step x step, and the farthest depth of its plane at
     their corners."""
     camera, depth = view.camera, view.load_passes().depth[::-1].astype(np.float64)
     normal = bottom_first(view.load_passes().normal) @ np.asarray(camera.rotation).T
@@ -82,7 +82,7 @@ def depths(view, step):
         ray = np.asarray(camera.offset) + np.asarray(camera.scale) * step * (texel + corner)
         ray = np.concatenate([ray, np.zeros(depth.shape)[..., None] - (not camera.orthographic)], -1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            # Where the corner's ray meets the plane n.(p - position) = 0; below 0 where it never does ahead of the camera.
+            # The corner's ray meets the plane n.(p - position) = 0 there; below 0: behind the camera, or never.
             reach = (
                 dot(normal, ray - position * (1, 1, 0)) / normal[..., 2] + depth
                 if camera.orthographic
@@ -111,7 +111,7 @@ def project(view, position):
 
 
 def shown_area(view, position, normal, depth):
-    """World area of what a texel of the depth map shows: z^3 du dv / |n.p| in perspective."""
+    """Area that a texel of the depth map shows of a surface: z^3 du dv / |n.p| in perspective."""
     footprint = abs(view.scale[0] * view.scale[1])
     outgoing = to_camera(view, position)
     cosine = np.maximum(np.abs(dot(normal, direction(outgoing))), COSINE_FLOOR)
@@ -123,8 +123,8 @@ def shown_area(view, position, normal, depth):
 
 
 def depth_at(view, projected, which=0):
-    """What the depth map shows there (which=1: the farthest in its texel); 0 outside its frame and behind the
-    camera."""
+    """Depth of the surface that the view shows there (which=1: the farthest in its texel); 0 outside its frame and
+    behind the camera."""
     height, width = view.depths.shape[:2]
     x, y = (np.floor(np.clip(projected[..., axis], -1e6, 1e6)).astype(int) for axis in (0, 1))
     inside = (projected[..., 2] > NEAREST) & (x >= 0) & (y >= 0) & (x < width) & (y < height)
@@ -143,7 +143,7 @@ def shows(view, position, normal, outgoing, projected):
 
 
 def own_share(cameras, own, position, normal, depth):
-    """Share of a surface that is one view's: w_k = A_k^-1 / sum_j A_j^-1."""
+    """One view's share of a surface: w_k = A_k^-1 / sum_j A_j^-1."""
     mine = 1 / shown_area(cameras[own], position, normal, depth)
     everyone, outgoing = mine.copy(), to_camera(cameras[own], position)
     for index, view in enumerate(cameras):
@@ -156,8 +156,8 @@ def own_share(cameras, own, position, normal, depth):
 
 
 def emit(views, cameras, own, side, step, receives):
-    """(rows, columns, 4, 4): the records of one view's blocks of side x side pixels, as shaders/emit.glsl stores
-    them."""
+    """(rows, columns, 4, 4): the records of one view's blocks of side x side pixels, as shaders/radiosity/emit.glsl
+    stores them."""
     passes, camera, view = views[own].load_passes(), views[own].camera, cameras[own]
     depth = passes.depth[::-1].astype(np.float64)
     height, width = depth.shape
@@ -183,8 +183,8 @@ def emit(views, cameras, own, side, step, receives):
 
 
 def radiate(emitters, irradiance):
-    """(n, 4): radiance and own area of emitters (n, 4, 4), given the irradiance (n, 3) of the receiver that each
-    belongs to; no radiance where float32 does not hold it."""
+    """(n, 4): radiance and area of emitters (n, 4, 4), given the irradiance (n, 3) of the receiver that each belongs
+    to; no radiance where it overflows float32."""
     with np.errstate(invalid="ignore"):
         sent = emitters[:, 2, :3] + emitters[:, 3, :3] * irradiance / np.pi
         fits = np.abs(sent).sum(-1, keepdims=True) <= np.finfo(np.float32).max
@@ -192,7 +192,7 @@ def radiate(emitters, irradiance):
 
 
 def receiver_of(grid, receivers):
-    """Of every emitter of a view its receiver's number; grids: (first, across, up, side)."""
+    """The number of each emitter's receiver, for one view; grids: (first, across, up, side)."""
     _, across, up, side = grid
     first, wide, high, large = receivers
     x, y = (np.minimum(np.arange(count) * side // large, most - 1) for count, most in ((across, wide), (up, high)))
@@ -200,8 +200,8 @@ def receiver_of(grid, receivers):
 
 
 def gap_at(view, positions):
-    """(shown, gap): whether the view's frame holds a position, and how far before the surface there it lies; below 0
-    behind it. Beside the frame, what its edge shows."""
+    """(shown, gap): whether a position is in the view's frame, and the depth of the surface there less that of the
+    position; below 0 behind it. Outside the frame, the surface at its edge."""
     projected = project(view, positions)
     height, width = view.depths.shape[:2]
     shown = depth_at(view, projected) > 0
@@ -210,8 +210,8 @@ def gap_at(view, positions):
 
 
 def passes_through(view, start, path, low, high):
-    """((n,) bool, (n,), (n,)): ways that are seen at one end of a step and hidden at the other go through a surface,
-    and not behind the edge of something nearer, where the gap jumps; and between which shares of them."""
+    """((n,) bool, (n,), (n,)): whether segments that are visible at one end of a step and hidden at the other pass
+    through a surface, and not behind the silhouette of something nearer, where the gap jumps; the narrowed step."""
     gap_low, gap_high = (gap_at(view, start + path * share[:, None])[1] for share in (low, high))
     whole = np.minimum(np.abs(gap_low - gap_high), MAX_GAP_SLOPE * np.linalg.norm(path, axis=-1) * (high - low))
     for _ in range(BISECTIONS):
@@ -224,8 +224,8 @@ def passes_through(view, start, path, low, high):
 
 
 def is_blocked(cameras, start, end, jitter, steps):
-    """(n,) bool: some view sees the way pass through a surface, or some position on it lies close behind a view's
-    surfaces and is seen free by none. start, end: (n, 3)."""
+    """(n,) bool: some view sees the segment pass through a surface, or a point of it lies close behind a view's
+    surfaces and is visible in none. start, end: (n, 3)."""
     share = (np.arange(steps)[:, None] + np.broadcast_to(jitter, len(start))) / steps  # (steps, n)
     path = end - start
     positions = start + path * share[..., None]
@@ -261,7 +261,7 @@ def world_radiance(world, towards):
 
 
 def pdf_factors(sent, by_area, world=0.0):
-    """(x, y): an emitter is drawn with the chance (x * (power + world) + y) * area."""
+    """(power_pdf, area_pdf): an emitter has the pdf (power_pdf * (power + world) + area_pdf) * area."""
     area, power = sent[:, 3], power_of(sent) + world
     bright = (power * area).sum()
     by_area = by_area if bright > 0 else 1
@@ -269,14 +269,14 @@ def pdf_factors(sent, by_area, world=0.0):
 
 
 def pdfs(sent, by_area):
-    """(n,) the chance of every emitter, 1 in all."""
+    """(n,) the pdf of every emitter, 1 in all."""
     power_pdf, area_pdf = pdf_factors(sent, by_area)
     return (power_pdf * power_of(sent) + area_pdf) * sent[:, 3]
 
 
 def all_pairs(positions, normals, emitters, sent, share_free=1.0, world=None):
-    """(n, 3): the irradiance of receivers from every emitter. share_free: (n, emitters), or 1 where nothing hides.
-    world: (4, 3), the light of which each emitter takes its part away."""
+    """(n, 3): the irradiance of receivers from every emitter. share_free: (n, emitters), or 1 without visibility.
+    world: (4, 3), the light of which each emitter covers its part."""
     form = form_factor(
         positions[:, None], normals[:, None], emitters[:, 0, :3], emitters[:, 1, 3], sent[:, 3:] * emitters[:, 1, :3]
     )
@@ -288,7 +288,7 @@ def all_pairs(positions, normals, emitters, sent, share_free=1.0, world=None):
 
 
 def share_free(cameras, positions, normals, emitters, steps, jitters=16):
-    """(n, emitters): for which share of the jitters the way is free; 1 where no light goes anyway."""
+    """(n, emitters): the share of the jitters for which the segment is free; 1 where the form factor is 0."""
     path = emitters[:, 0, :3] - positions[:, None]
     lit = (dot(normals[:, None], path) > 0) & (dot(emitters[:, 1, :3], path) < 0) & (emitters[:, 0, 3] > 0)
     here, there = np.nonzero(lit)
@@ -308,8 +308,8 @@ def brightness(light):
 
 
 def smooth(level, irradiance, world=None):
-    """(H, W, 3): means over the texels around that lie on the same surface, one and two texels apart. level:
-    reference.Level of the base. world: (H, W, 3), the light that there is of it: no more than that is taken away."""
+    """(H, W, 3): means over the texels around on the same surface, one and two texels apart. level: reference.Level
+    of the base. world: (H, W, 3), the world's light: no more than that is taken away."""
     height, width = level.area.shape
     normal, surface = direction(level.vector_area), level.area > 0
     spline = {0: 1.0, 1: 2 / 3, 2: 1 / 6}

@@ -1,34 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mean over gathers in float64 numpy, function by function as in shaders/. Base textures have the bottom row
-first."""
+"""The mean over gathers in float64 numpy, function by function as in shaders/temporal. Base textures have the bottom
+row first."""
 
 import numpy as np
 
 from .paper import FLATNESS_SHARPNESS, MIN_WEIGHT, NORMAL_POWER, direction, dot
 
 MIN_MOTION, SAME_HEIGHT, SAME_DEPTH, SAME_COSINE, MOVED_COSINE = 0.5, 1.0, 0.1, 0.9, 0.5
-DRIFT_RADIUS, DRIFT_STRIDE, DRIFT_START_SIGMA, DRIFT_END_SIGMA, RESET_SIGMA, SHARED_NOISE, SAME_SURFACE, MIN_TAPS = (
-    2,
-    2,
-    2.0,
-    3.0,
-    6.0,
-    0.03,
-    0.5,
-    8,
-)
+DRIFT_RADIUS, DRIFT_STRIDE, DRIFT_START_SIGMA, DRIFT_END_SIGMA, RESET_SIGMA = 2, 2, 2.0, 3.0, 6.0
+SHARED_NOISE, SAME_SURFACE, MIN_TAPS = 0.03, 0.5, 8
 RESET_START_SHARE, RESET_END_SHARE = 0.1, 0.5
 
 
 def texel_of(camera, start, position):
-    """(..., 2): where a camera's base texels have positions in its view space."""
+    """(..., 2): positions in a camera's view space, in its base texels."""
     ray = position[..., :2] / (1 if camera.orthographic else np.maximum(-position[..., 2:], 1e-4))
     return (ray - camera.offset) / (np.asarray(camera.scale) * start)
 
 
 def reproject(level, camera, past, past_camera, past_light, start, motion=None):
-    """(H, W, 4): what `past_light` (H, W, 4) knows of the surfaces of `level`. level, past: reference.Level of both
-    bases, each in its camera's view space. motion: (H, W, 2) in texels, or None."""
+    """(H, W, 4): the history of the surfaces of `level`, of `past_light` (H, W, 4). level, past: reference.Level of
+    both bases, each in its camera's view space. motion: (H, W, 2) in texels, or None."""
     surface = level.area > 0
     origin = np.asarray(past_camera.position) - np.asarray(camera.position)
     turn = np.asarray(past_camera.rotation) @ np.asarray(camera.rotation).T
@@ -96,8 +88,7 @@ def deviations(count, change, squares, now, _past):
 
 
 def drift(level, history, now):
-    """(H, W, 3): what surely changed of the light on the surface around each texel since it was history. now: (H, W,
-    3)."""
+    """(H, W, 3): the change of the light on the surface around each texel that is more than noise. now: (H, W, 3)."""
     here = changes(level, history, now, same_surface=True)
     return (
         here[1]
@@ -107,7 +98,7 @@ def drift(level, history, now):
 
 
 def kept(level, history, now):
-    """(H, W): what is history counts by this much, since the light around is another."""
+    """(H, W): factor on the history's weight, where the light around has changed."""
     around = changes(level, history, now, same_surface=False)
     _, change, _, light, past = around
     share = np.abs(change) / np.maximum(np.maximum(np.abs(light), np.abs(past)), 1e-37)
@@ -116,7 +107,7 @@ def kept(level, history, now):
 
 
 def accumulate(level, history, now, gathers, earlier_gathers, allows_drift):
-    """(H, W, 4): the mean of both, and of how many gathers it is. now: (H, W, 3)."""
+    """(H, W, 4): the mean of both, and the number of gathers that it is of. now: (H, W, 3)."""
     weight = (
         np.clip(history[..., 3], 0, earlier_gathers)
         if allows_drift
