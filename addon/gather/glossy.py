@@ -43,7 +43,7 @@ def gather(
         device.groups(*base.size),
         frame=base.frame,
     )
-    del reflected
+    del reflected, textures
     surfaces = {name: channel for name, channel in channels.items() if name in SURFACE_CHANNELS}
     indirect = composite(surfaces | upload_color(gloss.color), base, smoothed, settings.strength)
     return read_picture(indirect, gloss.roughness.shape[1])

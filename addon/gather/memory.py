@@ -67,7 +67,7 @@ def _radiosity_bytes(
         lit = packed + past + mean + specular + emitters + receivers + base
         steps += [
             packed + past + specular + CHANNELS * channel,
-            lit + max(emitters, 3 * base, 2 * base + 6 * channel),  # specular light added, reflected, composited
+            lit + max(emitters, 3 * base, base + 6 * channel),  # specular light added, reflected, composited
         ]
     return max(steps)
 

@@ -133,13 +133,17 @@ class Pass:
     defines: dict[str, str] = field(default_factory=dict)
 
     @cached_property
+    def option_block(self) -> Struct:
+        return Struct("Options", self.options)
+
+    @cached_property
     def blocks(self) -> dict[str, Struct]:
         """Its uniform blocks, by their names in GLSL."""
         blocks = {"frame": FRAME} if "common/camera" in self.files else {}
         if "radiosity/views" in self.files:
             blocks["views"] = VIEWS
         if self.options:
-            blocks["options"] = Struct("Options", self.options)
+            blocks["options"] = self.option_block
         return blocks
 
     def filled(
@@ -147,7 +151,7 @@ class Pass:
     ) -> dict[str, np.ndarray]:
         """The blocks' values. Raises TypeError where one is missing, or not this pass's."""
         filled = {name: block for name, block in (("frame", frame), ("views", views)) if block is not None}
-        own = Struct("Options", self.options).filled(**options)
+        own = self.option_block.filled(**options)
         if self.options:
             filled["options"] = own
         if {name: block.dtype for name, block in filled.items()} != {
