@@ -188,3 +188,32 @@ def test_what_metal_would_lay_out_otherwise_is_refused(light):
     ):
         with pytest.raises(ValueError):
             assert struct("Bad", fields).offsets is None
+
+
+# Bytes and alignment of types in the Metal Shading Language.
+METAL = {"int": (4, 4), "uint": (4, 4), "float": (4, 4), "vec2": (8, 8), "ivec2": (8, 8), "vec3": (16, 16)}
+METAL |= {"vec4": (16, 16), "mat4": (64, 16)}
+
+
+def metal_offsets(light, struct):
+    """{field: its offset, "": the size} of a struct's text by the rules of C, which Metal follows."""
+    known, offsets = dict(METAL), {}
+    for name, body in re.findall(r"struct (\w+) \{ (.*?) \};", light.std140.typedefs([struct])):
+        end, largest, offsets = 0, 1, {}
+        for kind, field, count in re.findall(r"(\w+) (\w+)(?:\[(\d+)\])?;", body):
+            size, alignment = known[kind]
+            offsets[field] = -(-end // alignment) * alignment
+            end, largest = offsets[field] + size * int(count or 1), max(largest, alignment)
+        offsets[""] = -(-end // largest) * largest
+        known[name] = offsets[""], largest
+    return offsets
+
+
+def test_metal_lays_blocks_out_alike(light):
+    interface = light.shader_interface
+    options = [made.blocks["options"] for made in interface.PASSES.values() if made.options]
+    for struct in (example(light), interface.FRAME, interface.VIEWS, *options):
+        for declared in (*struct.needs(), struct):
+            offsets = metal_offsets(light, declared)
+            expected = dict(zip([field.name for field in declared.fields] + [""], declared.offsets, strict=True))
+            assert {name: offsets[name] for name in expected} == expected, declared.name
