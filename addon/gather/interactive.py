@@ -12,8 +12,9 @@ import numpy as np
 from . import device
 from .device import Texture
 from .paper import gather, merge, upsample
-from .radiosity import build_records, smooth
 from .radiosity import gather as gather_bounces
+from .radiosity import smooth
+from .records import build_records
 from .shader_interface import COLOR_CHANNELS, DEPTH_RANGE_BLOCK, LIGHT_CHANNELS, SURFACE_CHANNELS
 from .stages import composite, pack, upload
 from .temporal import History

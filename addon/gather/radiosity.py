@@ -11,30 +11,29 @@ docs/method/radiosity.md has the measurements that decided the constants.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from . import device, glossy
 from .device import Texture
+from .records import Records, build_records, specular_emitters
 from .shader_interface import EMITTER_TABLE_WIDTH, LIGHT_CHANNELS, RECORDS_WIDTH, SQUARE
 from .stages import (
     Progress,
     Pyramid,
     Report,
     composite,
-    frame_block,
     pack,
     read_picture,
     reporter,
     run_in_bands,
     stopwatch,
-    upload,
 )
 from .temporal import SEED_STRIDE, History, accumulate
-from .types import Gloss, GpuPasses, Passes, RadiositySettings, View
-from .view_layout import KINDS, count_of, grid_of, has_world, own_table, rows_of, start_of, view_table, world_power
+from .types import Gloss, Passes, RadiositySettings, View
+from .view_layout import count_of, has_world, rows_of, start_of, world_power
 
 SHADOW_STEPS = 24  # along a shadow ray
 ENTRIES = 1 << 18  # of the table that emitters are sampled from
@@ -42,17 +41,6 @@ BY_AREA = 0.5  # share of the table in proportion to area, the rest to power: ne
 BOUNCE_GROUPS, BOUNCE_CANDIDATES = 16, 8  # of receivers whose light is sent on: many of them average its noise
 SMOOTH_STEPS = 1, 2  # texels between the taps of each pass that smooths
 UNSMOOTHED = (0,)  # all taps are the texel itself
-
-
-@dataclass(frozen=True, eq=False)
-class Records:
-    """All views on the GPU. table: the VIEWS block. depths: their depth maps, one above the other. emitters, receivers:
-    textures of records (shaders/radiosity/emit.glsl)."""
-
-    table: np.ndarray
-    depths: Texture
-    emitters: Texture
-    receivers: Texture
 
 
 def gather_views(
@@ -86,8 +74,10 @@ def gather_views(
     for name in LIGHT_CHANNELS:
         del channels[name]
     del passes
-    specular = specular_emitters(views, records) if gloss is not None else None
-    pictures = []
+    specular, pictures = None, []
+    if gloss is not None:
+        specular = specular_emitters(views, records)
+        lap("glossy", specular)
 
     def gathers(light: Texture | None, first: int, last: int) -> Texture:
         """The mean of `light`, which is that of gathers up to `first`, and of those up to `last`."""
@@ -171,83 +161,6 @@ def smooth(base: Pyramid, light: Texture, table: np.ndarray, settings: Radiosity
         )
         light = total
     return light
-
-
-def build_records(
-    views: list[View],
-    settings: RadiositySettings,
-    world: np.ndarray | None = None,
-    size: tuple[int, int] | None = None,
-    report: Report = lambda stage, fraction: None,
-    broken: dict[str, int] | None = None,
-) -> tuple[Records, dict[str, Texture], Passes | GpuPasses]:
-    """(records of all views, channels and passes of the main view). size: (width, height) of views that are not coarse,
-    if it is not the main view's own. One view's passes are held at a time."""
-    passes: Passes | GpuPasses | None = views[0].load_passes()
-    assert passes is not None
-    table = view_table(views, size or passes.size, settings, world)
-    width, height = (int(side) for side in table["depth_size"])
-    depths = device.texture(width, height * len(views), "RG32F")
-    for index, view in enumerate(views):
-        report("views", index / len(views) / 2)
-        passes = passes or view.load_passes()
-        device.dispatch(
-            "depths",
-            upload(passes, light=False) | {"depths_out": depths},
-            device.groups(width, height),
-            frame=frame_block(view.camera, passes.size),
-            views=own_table(view, table),
-            view=index,
-        )
-        if index + 1 < len(views):
-            passes = None  # before the next ones are loaded
-    targets = {kind: device.texture(4 * RECORDS_WIDTH, rows_of(table, kind)) for kind in KINDS}
-    channels: dict[str, Texture] = {}
-    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
-        report("views", 1 - (index + 1) / len(views) / 2)
-        channels.clear()
-        passes = passes or views[index].load_passes()
-        channels = upload(passes, None if index else broken)
-        for kind, target in targets.items():
-            emit(views[index], index, passes, channels, depths, own_table(views[index], table), kind, target)
-        if index:
-            passes = None
-    assert passes is not None
-    return Records(table, depths, **targets), channels, passes
-
-
-def emit(
-    view: View,
-    index: int,
-    passes: Passes | GpuPasses,
-    channels: dict[str, Texture],
-    depths: Texture,
-    table: np.ndarray,
-    kind: str,
-    target: Texture,
-) -> None:
-    """Write one view's records of a kind."""
-    device.dispatch(
-        "emit_with_normals" if passes.lacks_normals() else "emit",
-        channels | {"depths": depths, "records_out": target},
-        device.groups(*grid_of(table, kind, index)),
-        frame=frame_block(view.camera, passes.size),
-        views=table,
-        view=index,
-        receives=kind == "receivers",
-    )
-
-
-def specular_emitters(views: list[View], records: Records) -> Texture:
-    """Records of emitters with the specular light of lamps and world in place of the diffuse light, and with Glossy
-    Color in place of the albedo; black where a view has none."""
-    target = device.texture(4 * RECORDS_WIDTH, rows_of(records.table, "emitters"))
-    target.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
-    for index, view in enumerate(views):
-        passes = view.load_specular()
-        if passes is not None:
-            emit(view, index, passes, upload(passes), records.depths, records.table, "emitters", target)
-    return target
 
 
 def radiate(emitters: Texture, irradiance: Texture, table: np.ndarray) -> Texture:

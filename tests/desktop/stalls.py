@@ -34,9 +34,10 @@ OF_METHOD = {
         "place views": ("render.views_engine", "AfterlightScout", "_place"),
         "save views": ("compositor.view_scenes", "save"),
     }
+    | {"upload": ("gather.records", "upload")}
     | {
         name: ("gather.radiosity", name)
-        for name in ("build_records", "upload", "pack", "radiate", "emitter_table", "sample_emitters", "composite")
+        for name in ("build_records", "pack", "radiate", "emitter_table", "sample_emitters", "composite")
     },
 }
 

@@ -50,7 +50,7 @@ class Stages:
 
 
 def stages(light, views, chosen):
-    records, *_ = light.radiosity.build_records(views, chosen)
+    records, *_ = light.records.build_records(views, chosen)
     return Stages(records, views_64.cameras_of(views, int(records.table["depth_step"])))
 
 
