@@ -27,7 +27,7 @@ def rays(afterlight):
 
 @pytest.fixture
 def stand_in(rays):
-    return rays.stand_in
+    return rays.proxy_mesh
 
 
 def seconds(call, times=2):
