@@ -133,7 +133,9 @@ def state_of(source):
             isinstance(each, ast.Dict | ast.List | ast.Set | ast.Call) for each in _values(node.value)
         )
         for name in names:
-            if name in rebound or (is_container and name.startswith("_") and not name.startswith("__")):
+            if name in rebound or (
+                is_container and name.startswith("_") and not name.startswith("__") and not name.isupper()
+            ):
                 first = node.lineno - 1
                 while first and lines[first - 1].startswith("#"):
                     first -= 1
