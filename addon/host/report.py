@@ -59,7 +59,7 @@ def fail(scene, text):
     if message(scene) == text:
         return False
     _messages[scene.session_uid] = text
-    pop_up(text, say("Afterlight: the picture has no indirect light"))
+    pop_up(text, say("Afterlight: the image has no indirect light"))
     return True
 
 
@@ -167,7 +167,7 @@ def _exit_code():
     """
     if not _failed:
         return
-    tell("Afterlight: exit code 1, because a render was not lit", sys.stderr)
+    tell("Afterlight: exit code 1, because a render has no indirect light", sys.stderr)
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()

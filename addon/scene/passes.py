@@ -66,7 +66,7 @@ def save(scene):
         discard(path)
         if "does not have any image data" in str(error):
             raise Problem(
-                'There is no render of "{}" to light. Render that one, not the scene that serves to light it',
+                'There is no render of "{}". Render that scene instead of its helper scene',
                 scene.name,
             ) from error
         raise _not_written(_text(error)) from error
@@ -184,7 +184,8 @@ def _channels(path):
         return channels
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
         raise Problem(
-            "The passes could not be read back from {} ({}). The disk of the temporary folder may be full",
+            "The passes could not be read back from {} ({}). The disk of the temporary folder may be full: free some "
+            "space there",
             path,
             _text(error),
         ) from error

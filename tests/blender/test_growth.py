@@ -292,7 +292,7 @@ def test_edits_cost_nothing_where_no_viewport_is_lit(scene, afterlight, monkeypa
 
 def test_a_scene_with_a_camera_is_not_searched_for_one(scene, afterlight, monkeypatch):
     checks, asked = afterlight.addon.diagnosis.checks, []
-    monkeypatch.setattr(checks.cures, "spare_camera", lambda scene: asked.append(scene))
+    monkeypatch.setattr(checks.fixes, "spare_camera", lambda scene: asked.append(scene))
     checks.findings(scene)
     assert not asked
     scene.camera = None

@@ -26,7 +26,7 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
             ),
         ]
 
-    names = {"use_viewport", *(parameter.name for parameter in addon.properties.PARAMETERS)}
+    names = {parameter.name for parameter in addon.parameters.PARAMETERS}
     paper, radiosity = (
         {"samples", "radius"},
         {
@@ -209,17 +209,17 @@ def test_one_click_mends_it_and_undo_takes_it_back(scene, addon, spoil):
     assert not findings(scene)
     spoil(scene)
     (found,) = findings(scene)
-    assert found.cure and found.fatal == (spoil != probes)
+    assert found.fix and found.fatal == (spoil != probes)
     panel = drawn(addon.ui.panel.AFTERLIGHT_PT_indirect_light)
     assert words(panel) == found.text
     assert [
         (arguments[0], options["text"])
         for kind, arguments, options, _ in panel
         if kind == "operator" and arguments[0] == "afterlight.mend"
-    ] == [("afterlight.mend", addon.diagnosis.fixes.CURES[found.cure].button)]
+    ] == [("afterlight.mend", addon.diagnosis.fixes.FIXES[found.fix].button)]
     bpy.ops.ed.undo_push(message="spoiled")
     before = written_down()
-    assert bpy.ops.afterlight.mend(cure=found.cure) == {"FINISHED"}
+    assert bpy.ops.afterlight.mend(cure=found.fix) == {"FINISHED"}
     assert not findings(scene)
     bpy.ops.ed.undo_push(message="mended")
     bpy.ops.ed.undo()
@@ -233,25 +233,25 @@ def test_no_button_where_only_the_user_knows(scene, addon):
     scene.afterlight.enabled = True
     tree.nodes.remove(tree.nodes["Afterlight"])
     (found,) = findings(scene)
-    assert "Link the Image" in found.text and not found.cure
+    assert "Link the Image" in found.text and not found.fix
     for node in [node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers"]:
         tree.nodes.remove(node)
     (found,) = findings(scene)
-    assert "Add one" in found.text and not found.cure
+    assert "Add one" in found.text and not found.fix
     scene.afterlight.enabled = False
     bpy.data.objects.remove(scene.camera)
     (found,) = findings(scene)
-    assert "Add > Camera" in found.text and not found.cure
+    assert "Add > Camera" in found.text and not found.fix
 
 
 def test_a_helper_scene_leads_to_the_scene_it_lights(scene, addon):
     scene.afterlight.enabled = True
     bpy.context.window.scene = scene.afterlight.helper
     (found,) = addon.diagnosis.checks.findings(bpy.context.scene)
-    assert bpy.ops.afterlight.mend(cure=found.cure) == {"FINISHED"} and bpy.context.window.scene == scene
+    assert bpy.ops.afterlight.mend(cure=found.fix) == {"FINISHED"} and bpy.context.window.scene == scene
 
 
 def test_lines_are_broken_where_they_fit(addon):
-    wrapped = addon.ui.panel.wrapped
+    wrapped = addon.ui.drawing.wrapped
     assert wrapped("one two three", lambda line: len(line) <= 7) == ["one two", "three"]
     assert wrapped("extraordinary", lambda line: len(line) <= 7) == ["extraordinary"]

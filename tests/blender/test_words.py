@@ -52,7 +52,7 @@ def opened(monkeypatch):
 def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     bpy.ops.afterlight.help()
     bpy.ops.afterlight.help(section="samples")
-    for parameter in addon.properties.PARAMETERS:
+    for parameter in addon.parameters.PARAMETERS:
         bpy.ops.wm.doc_view_manual(doc_id=f"AfterlightSettings.{parameter.name}")
     bpy.ops.wm.doc_view_manual(doc_id="AfterlightSettings.enabled")
     operators = [f"afterlight.{name}" for name in dir(bpy.ops.afterlight)]
@@ -63,8 +63,8 @@ def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     anchors = Anchors(path.read_text()).ids
     sections = [section for _, section in opened]
     assert sections[:2] == ["", "samples"]
-    first = 3 + len(addon.properties.PARAMETERS)
-    assert sections[2:first] == [*(parameter.name for parameter in addon.properties.PARAMETERS), "enabled"]
+    first = 3 + len(addon.parameters.PARAMETERS)
+    assert sections[2:first] == [*(parameter.name for parameter in addon.parameters.PARAMETERS), "enabled"]
     assert len(sections) == first + len(operators) and set(sections[1:]) <= set(anchors)
 
 
@@ -73,9 +73,9 @@ def test_the_page_of_help_is_whole(addon):
     page = Anchors(text)
     assert len(page.ids) == len(set(page.ids))
     assert all(link.startswith("#") and link[1:] in page.ids for link in page.links), "nothing needs a network"
-    for parameter in addon.properties.PARAMETERS:
+    for parameter in addon.parameters.PARAMETERS:
         assert f">{parameter.label} <" in text, parameter.label
-    start = next(parameter for parameter in addon.properties.PARAMETERS if parameter.name == "start")
+    start = next(parameter for parameter in addon.parameters.PARAMETERS if parameter.name == "start")
     for _, label, *_ in start.options["items"]:
         assert f"<th>{label}</th>" in text
     for preset in (ADDON / "presets" / "afterlight").glob("*.py"):
@@ -186,7 +186,8 @@ def test_words_are_said_in_the_language_of_the_interface(scene, addon, monkeypat
 
 
 def test_tooltips_say_what_it_does_and_what_it_costs(addon):
-    for parameter in addon.properties.PARAMETERS:
+    for parameter in addon.parameters.PARAMETERS:
         assert re.search(r"cost|time|fast", parameter.tooltip, re.I), parameter.name
-    for kind in addon.ui.operators.CLASSES:
-        assert getattr(kind, "bl_description", "") or inspect.getattr_static(kind, "description", None), kind
+    for kind in bpy.types.Operator.__subclasses__():
+        if kind.__module__.startswith(extension.MODULE):
+            assert getattr(kind, "bl_description", "") or inspect.getattr_static(kind, "description", None), kind
