@@ -12,7 +12,7 @@ from typing import Any
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from . import gather
-from .compositor import view_scenes
+from .scene import needs
 
 MAIN, SAMPLING, VIEWS = "MAIN", "SAMPLING", "VIEWS"  # the panel and its sub-panels
 LIGHT, NODES, VIEWPORTS = "LIGHT", "NODES", "VIEWPORTS"  # what a change of a setting changes
@@ -283,7 +283,7 @@ PARAMETERS = (
         "Views at Most",
         "Maximum number of automatic views. Fewer are placed, at less cost, if another one would capture little new "
         "light",
-        {"default": 7, "min": 1, "max": view_scenes.MOST},
+        {"default": 7, "min": 1, "max": needs.MOST_VIEWS},
         panel=VIEWS,
         methods=RADIOSITY,
         active=lambda settings: settings.views == "AUTOMATIC",

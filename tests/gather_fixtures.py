@@ -153,17 +153,18 @@ def build_box_scene(width, height, samples):
 @cache
 def rendered_box(light, width=160, height=90, samples=16):
     """(Passes, Camera) of the box scene as EEVEE renders it."""
-    passes = importlib.import_module(f"{light.__package__.rpartition('.')[0]}.scene.passes")
+    package = importlib.import_module(f"{light.__package__.rpartition('.')[0]}.scene")
+    cameras, frame_store, passes = package.cameras, package.frame_store, package.passes
     scene = build_box_scene(width, height, samples)
     layer = scene.view_layers[0]
     for _, switch, _, _ in passes.PASSES:
         setattr(layer, switch, True)
     bpy.ops.render.render()
-    path = passes.save(scene)
-    rendered = passes.load(path, layer.name, passes.window(scene)[0])
-    passes.discard(path)
+    path = frame_store.save(scene)
+    rendered = passes.load(path, layer.name, cameras.window(scene)[0])
+    frame_store.discard(path)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return rendered, passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+    return rendered, cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
 
 
 def pyramid_of(light, passes, camera, settings):

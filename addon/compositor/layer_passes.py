@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes of a view layer: those that Afterlight reads are switched on, and off again when nobody needs them."""
 
-from ..scene import passes, roughness, transmittance
+from ..host.assign import assign
+from ..scene import needs, passes, roughness, transmittance
 from ..scene.passes import MOTION, PASSES, needed
 from . import freestyle, nodes
 from .nodes import MARK
@@ -21,7 +22,7 @@ _ALL = dict(
 def of_the_gather(scene, layer):
     """(switch, pass) of all that the gather reads of a view layer."""
     settings = scene.afterlight
-    shines = settings.use_glossy and settings.method == "RADIOSITY"
+    shines = settings.use_glossy and needs.has_views(settings)
     return [*((switch, name) for _, switch, name, _ in needed(settings)), *(roughness.needed(layer) if shines else ())]
 
 
@@ -42,7 +43,7 @@ def switch(scene, layer, read):
             passes.turn(layer, each, True)
         elif each in unwanted and name not in used:
             passes.turn(layer, each, False)
-    nodes.assign(layer.afterlight, "passes", ",".join(sorted(ours - unwanted)))
+    assign(layer.afterlight, "passes", ",".join(sorted(ours - unwanted)))
 
 
 def adopt(scene):
@@ -50,7 +51,7 @@ def adopt(scene):
     for layer in scene.view_layers:
         found = layer.get(MARK)
         if isinstance(found, list) and found and all(isinstance(each, str) and each in _ALL for each in found):
-            nodes.assign(layer.afterlight, "passes", ",".join(found))
+            assign(layer.afterlight, "passes", ",".join(found))
             del layer[MARK]
 
 

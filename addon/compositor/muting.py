@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """No light without its picture: where a Render Layers node is muted, or its link, so is our light."""
 
-from .nodes import RESULT, A, B, assign, light_of, role, shows_picture, socket
+from ..host.assign import assign
+from .nodes import RESULT, A, B, light_of, role, shows_picture, socket
 
 MUTED = "afterlight_muted"  # custom property of light nodes that we muted because their picture is
 BLACK, CLEAR = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0)

@@ -276,13 +276,6 @@ def socket(sockets, identifier):
     return next(each for each in sockets if each.identifier == identifier)
 
 
-def assign(data, name, value):
-    """Set only what differs: setting tags the file as edited, and Blender would call us again."""
-    old = getattr(data, name)
-    if (tuple(old) != tuple(value)) if hasattr(old, "__len__") and not isinstance(old, str) else old != value:
-        setattr(data, name, value)
-
-
 def _light_for(tree, picture, helper):
     """A light node for the layer of `picture`: one that lost its adding node, or a new one."""
     idle = (

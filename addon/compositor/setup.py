@@ -3,13 +3,13 @@
 
 import bpy
 
-from ..host import render_lock, roles
+from ..host import engines, render_lock, roles
+from ..host.assign import assign
 from ..host.roles import HELPER, source
-from ..scene import passes, world_light
+from ..scene import needs, passes
 from ..translations import say
 from . import freestyle, layer_passes, muting, nodes, optional_nodes, own_tree, view_scenes
 
-ENGINE = "AFTERLIGHT"
 HELPER_NAME = ".Afterlight ({})"  # Blender leaves names with a leading dot out of its menus
 
 
@@ -33,13 +33,13 @@ def connect(scene):
         nodes.splice(picture.id_data, picture, helper)
     nodes.request(tree, scene, helper)
     for group in nodes.trees(tree):
-        if wants_gloss(scene):
+        if needs.glossy_light(scene):
             optional_nodes.splice_gloss(group, scene, helper)
         else:
             optional_nodes.unsplice_gloss(group, (helper, None))
     follow(scene)
     for group in nodes.trees(tree):  # now that the passes are on which the Denoise node gets
-        if wants_denoise(scene):
+        if needs.denoise_node(scene):
             optional_nodes.splice_denoise(group, scene)
         else:
             optional_nodes.unsplice_denoise(group, (helper, None))
@@ -54,18 +54,6 @@ def connect_if_enabled(scene):
         connect(scene)
 
 
-def wants_gloss(scene):
-    """Whether the light off glossy surfaces is to be gathered."""
-    settings = scene.afterlight
-    return settings.enabled and settings.use_glossy and settings.method == "RADIOSITY"
-
-
-def wants_denoise(scene):
-    """Whether Blender's Denoise node is to have the light."""
-    settings = scene.afterlight
-    return settings.enabled and settings.denoise == "NODE" and settings.method == "RADIOSITY"
-
-
 def follow(scene):
     """Bring helper scene, passes and our nodes in line with `scene` as it is now: layers added, removed or renamed,
     the scene renamed or copied. Puts no node where the user may have taken one away."""
@@ -76,14 +64,14 @@ def follow(scene):
         connect(scene)  # a copied scene: it still names the helper of its original
         return
     _mirror_layers(scene, helper)
-    world_light.mirror(scene, helper)
+    _mirror_world(scene, helper)
     view_scenes.follow(scene)
     for group in nodes.trees(scene.compositing_node_group):
         nodes.retarget(group, scene, helper, helper)
         muting.follow(group, scene)
     lit = {node.layer for node in nodes.all_nodes(scene.compositing_node_group) if nodes.shows(node, helper)}
     for layer, mirror in zip(scene.view_layers, helper.view_layers, strict=True):
-        nodes.assign(mirror, "use", layer.use and layer.name in lit)
+        assign(mirror, "use", layer.use and layer.name in lit)
     were_drawn = {layer.name for layer in scene.view_layers if freestyle.is_wanted(scene, layer.name)}
     for group in nodes.trees(scene.compositing_node_group):
         freestyle.unsplice(group, scene)
@@ -162,7 +150,12 @@ def faults(scene):
     """What is missing from the wiring of an enabled scene, as {sentence for people: what mends it in fixes.py, or ""};
     empty where all is in place."""
     helper, tree = scene.afterlight.helper, scene.compositing_node_group
-    if helper is None or source(helper) != scene or helper.render.engine != ENGINE or roles.camera(helper) is None:
+    if (
+        helper is None
+        or source(helper) != scene
+        or helper.render.engine != engines.LIGHT
+        or roles.camera(helper) is None
+    ):
         return {say("Afterlight's helper scene was deleted or changed. Press Repair"): "REPAIR"}
     if tree is None or not scene.render.use_compositing:
         return {say("Compositing is disabled, so no light can be added to the image. Press Repair"): "REPAIR"}
@@ -174,8 +167,8 @@ def faults(scene):
     if not pictures:
         return {
             say(
-                'The compositor has no Render Layers node of "{}", so there is no image to add light to. Add one and '
-                "link its Image",
+                'The compositor has no Render Layers node of "{}", so there is no image to add light to. Add one '
+                "and link its Image",
                 scene.name,
             ): ""
         }
@@ -190,8 +183,8 @@ def faults(scene):
     if not any(picture.id_data == tree for picture in pictures):
         return {
             say(
-                "All Render Layers nodes of this scene are inside node groups, so Blender does not render the scene. "
-                "Add one outside of the groups. It does not have to be linked"
+                "All Render Layers nodes of this scene are inside node groups, so Blender does not render the "
+                "scene. Add one outside of the groups. It does not have to be linked"
             ): "RENDER_LAYERS"
         }
     found = {}
@@ -199,8 +192,8 @@ def faults(scene):
     if lost:  # where links went is known in our own tree only
         found[
             say(
-                "The node that adds the light to {} was deleted, and with it the links of the image. Link the Image of "
-                "its Render Layers node again",
+                "The node that adds the light to {} was deleted, and with it the links of the image. Link the "
+                "Image of its Render Layers node again",
                 ", ".join(lost),
             )
         ] = "REPAIR" if own_tree.is_ours(scene, tree) else ""
@@ -210,8 +203,8 @@ def faults(scene):
     if dark:
         found[
             say(
-                "The compositor uses {} without the indirect light, because a node of Afterlight was deleted or a "
-                "Render Layers node was added. Press Repair",
+                "The compositor uses {} without the indirect light, because a node of Afterlight was deleted or "
+                "a Render Layers node was added. Press Repair",
                 ", ".join(dark),
             )
         ] = "REPAIR"
@@ -220,8 +213,9 @@ def faults(scene):
     elif not found and not nodes.uses_light(tree, scene, helper) and not own_tree.is_untouched(scene, tree):
         found[
             say(
-                'The compositor does not use the Image of any Render Layers node of "{}", so there is no image to add '
-                "light to. Link the Image of one, or the output Indirect of Afterlight's own Render Layers node",
+                'The compositor does not use the Image of any Render Layers node of "{}", so there is no image '
+                "to add light to. Link the Image of one, or the output Indirect of Afterlight's own Render "
+                "Layers node",
                 scene.name,
             )
         ] = ""
@@ -232,9 +226,9 @@ def faults(scene):
         found[say("The indirect light is no longer linked to the node that adds it. Press Repair")] = "REPAIR"
     if view_scenes.faults(scene):
         found[say("A helper scene for the views was deleted, or its node in the compositor. Press Repair")] = "REPAIR"
-    if wants_gloss(scene) and any(optional_nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
+    if needs.glossy_light(scene) and any(optional_nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
         found[say("The glossy light is no longer linked to the node that adds it. Press Repair")] = "REPAIR"
-    if wants_denoise(scene) and any(optional_nodes.lacks_denoise(group, scene) for group in nodes.trees(tree)):
+    if needs.denoise_node(scene) and any(optional_nodes.lacks_denoise(group, scene) for group in nodes.trees(tree)):
         found[say("The Denoise node of the indirect light was deleted. Press Repair")] = "REPAIR"
     if any(freestyle.lacks(group, scene) for group in nodes.trees(tree)):
         found[say("The node that draws the Freestyle lines over the light was deleted. Press Repair")] = "REPAIR"
@@ -269,12 +263,12 @@ def _clear(tree, scene, ours):
 
 def _own_helper(scene):
     found = roles.own(scene, HELPER)
-    helper = found[0] if found else roles.new(scene, HELPER, _helper_name(scene), ENGINE)
-    nodes.assign(scene.afterlight, "helper", helper)
+    helper = found[0] if found else roles.new(scene, HELPER, _helper_name(scene), engines.LIGHT)
+    assign(scene.afterlight, "helper", helper)
     # Blender asks every scene of the compositor for a camera. This one only answers; nothing looks through it.
     roles.give_camera(helper)
     helper.eevee.taa_render_samples = 1  # what is rendered in its place where the extension is missing
-    helper.render.engine = ENGINE
+    helper.render.engine = engines.LIGHT
     return helper
 
 
@@ -310,3 +304,10 @@ def _offer_passes(helper):
     """Let the Render Layers nodes of `helper` offer the passes that its engine gives now."""
     for layer in helper.view_layers:
         layer.update_render_passes()
+
+
+def _mirror_world(scene, helper):
+    """Let `helper`'s depsgraph hold what shines on `scene`, so that it can be looked at as it is in a frame."""
+    assign(helper, "world", scene.world)
+    for layer, own in zip(scene.view_layers, helper.view_layers):
+        assign(own, "world_override", layer.world_override)

@@ -11,23 +11,19 @@ At rest no view layer of these scenes is rendered. The scout switches on what th
 again: a view that is not needed costs nothing, nor does any where the extension is missing.
 """
 
-from dataclasses import dataclass
-
 import bpy
 import numpy as np
 
-from .. import gather
-from ..host import roles
-from ..host.report import Problem
+from ..host import engines, roles
+from ..host.assign import assign
 from ..host.roles import SCOUT, VIEW
-from ..scene import animation, passes, roughness, view_cameras
+from ..scene import needs, passes, roughness
 from ..translations import say
 from ..views import placement
 from . import nodes
 
-SCOUT_ENGINE = "AFTERLIGHT_SCOUT"
 SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
-MOST = 9
+MOST = needs.MOST_VIEWS
 FARTHEST = 1e9  # metres from the world's origin that a pose may be
 PLACED = "placed"  # custom property of the scout's scene
 SAMPLES = 1  # EEVEE's; the pixels are averaged down afterwards
@@ -60,16 +56,6 @@ _LAYER = (
     "use_grease_pencil",
 )
 _EEVEE_OWN = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
-
-_rendered = None  # session_uid of the scene that is being rendered
-
-
-def wanted(scene):
-    """How many views `scene` may need in a frame."""
-    settings = scene.afterlight
-    if not settings.enabled or settings.views == "CAMERA" or settings.method == "PAPER":
-        return 0
-    return settings.view_count if settings.views == "AUTOMATIC" else min(len(settings.view_cameras), MOST)
 
 
 def scout(scene):
@@ -119,8 +105,6 @@ def follow(scene):
 
 def mirror(scene):
     """Give the view scenes what decides how the surfaces of `scene` look."""
-    from . import setup
-
     layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
     for each in _own(scene):
         own = each.view_layers[0]
@@ -130,16 +114,16 @@ def mirror(scene):
             (layer, own, _LAYER),
         ):
             for name in names:
-                nodes.assign(target, name, getattr(source, name))
+                assign(target, name, getattr(source, name))
         for prop in scene.eevee.bl_rna.properties:
             if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
-                nodes.assign(
+                assign(
                     each.eevee, prop.identifier, _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier))
                 )
-        nodes.assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
-        nodes.assign(each, "background_set", scene)
+        assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
+        assign(each, "background_set", scene)
         for switch, _ in (roughness.COLOR, roughness.DIRECT):
-            nodes.assign(own, switch, each.afterlight.role == VIEW and setup.wants_gloss(scene))
+            assign(own, switch, each.afterlight.role == VIEW and needs.glossy_light(scene))
 
 
 def faults(scene):
@@ -152,24 +136,11 @@ def faults(scene):
     return found != ours
 
 
-def begin(scene):
-    """The render of `scene` begins."""
-    global _rendered
-    _rendered = scene.session_uid
-
-
-def reset(*_):
-    """No view is needed until the scout says so."""
-    global _rendered
-    _rendered = None
+def leave_all_out():
+    """No view is rendered until the views' engine says so."""
     for each in bpy.data.scenes:
         if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.source(each):
-            nodes.assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
-
-
-def is_rendered(scene):
-    """Whether it is `scene` that is rendered, and not another whose compositor shows it as well."""
-    return scene.session_uid == _rendered
+            assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
 
 
 def placed(scene):
@@ -193,8 +164,7 @@ def forget_placed(scene):
 
 
 def prepare(scene):
-    """The scout begins: no view is in the frame as yet, and all look as `scene` does."""
-    animation.begin_frame()
+    """A frame's views are about to be chosen: none is in it as yet, and all look as `scene` does."""
     for view in scenes(scene):
         drop(view)
     mirror(scene)
@@ -202,7 +172,7 @@ def prepare(scene):
 
 def drop(view):
     """Leave a view scene out of this frame."""
-    nodes.assign(view.view_layers[0], "use", False)
+    assign(view.view_layers[0], "use", False)
 
 
 def posed(scene):
@@ -210,59 +180,6 @@ def posed(scene):
     tree = scene.compositing_node_group
     shown = [node.scene for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and not node.mute]
     return [each for each in scenes(scene) if each in shown and each.view_layers[0].use]
-
-
-def leave_out_still(scene, depsgraph):
-    """Of the posed views, drop those that would see what they saw in the frame before."""
-    for view in posed(scene):
-        if animation.recall(scene, depsgraph, view, view_cameras.shown(view, scene)):
-            drop(view)
-
-
-@dataclass(frozen=True, eq=False)
-class Saved:
-    """A view of a finished frame. path: a file that passes.save() wrote. layer: its view layer. window: as
-    passes.window() gave it."""
-
-    path: str
-    layer: str
-    window: tuple
-    camera: gather.Camera
-
-    def load(self):
-        """gather.Passes of the view. Raises status.Problem."""
-        return passes.load(self.path, self.layer, self.window)
-
-    def shine(self):
-        """As gather.View has it."""
-        return roughness.shine(self.path, self.layer, self.window)
-
-
-def save(scene, depsgraph, warn):
-    """[Saved] of the views of this frame of `scene`, rendered or known. warn: called with a text where one fails."""
-    found, rendered = [], posed(scene)
-    for view in scenes(scene):
-        if known := animation.recalled(view):
-            found.append(known)
-            continue
-        if view not in rendered:
-            continue
-        try:
-            path = passes.save(view)
-        except Problem as problem:
-            warn(say("A view could not be used: {}", say(*problem.args)))
-            continue
-        except gather.Cancelled:
-            for each in found:
-                passes.discard(each.path)
-            raise
-        found.append(
-            Saved(path, view.view_layers[0].name, passes.window(scene)[0], view_cameras.camera(view, depsgraph, scene))
-        )
-        animation.remember(view, view_cameras.shown(view, scene), found[-1])
-    for path in animation.forget_others(found):
-        passes.discard(path)
-    return found
 
 
 def unusable(thing):
@@ -309,7 +226,7 @@ def _own(scene):
 
 def _held(scene):
     """How many scenes `scene` needs: the scout, and one for each view."""
-    views = wanted(scene)
+    views = needs.views(scene)
     return views + 1 if views else 0
 
 
@@ -339,7 +256,7 @@ def _ensure_scenes(scene):
 def _new(scene, role, index):
     is_view = role == VIEW
     made = roles.new(
-        scene, role, _name(scene, index + 1 if is_view else 0), "BLENDER_EEVEE" if is_view else SCOUT_ENGINE
+        scene, role, _name(scene, index + 1 if is_view else 0), engines.EEVEE if is_view else engines.VIEWS
     )
     roles.give_camera(made)
     layer = made.view_layers[0]

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import bpy
 
 from ..compositor import setup
-from ..host import render_lock, roles
+from ..host import engines, render_lock, roles
 from ..host.version import VERSION
-from ..render import relight
+from ..scene import needs
 from ..translations import say
 from . import fixes
 
@@ -48,7 +48,7 @@ def counts_twice(scene):
     """Whether EEVEE's ray tracing has added indirect light to its Diffuse Direct pass. Its roughness limit and Fast GI
     make no difference to that (docs/blender/rendering.md)."""
     eevee = scene.eevee
-    return scene.render.engine == "BLENDER_EEVEE" and eevee.use_raytracing and eevee.indirect_light_intensity > 0
+    return scene.render.engine == engines.EEVEE and eevee.use_raytracing and eevee.indirect_light_intensity > 0
 
 
 def holds_reflections(scene):
@@ -71,7 +71,7 @@ def _of_helper(scene):
 
 
 def _of_engine(scene):
-    if scene.render.engine != "BLENDER_EEVEE" and not relight.is_replayed(scene):
+    if scene.render.engine not in (engines.EEVEE, engines.REPLAY):
         text = say(
             "Indirect Light needs EEVEE, but the render engine is {}. Set Render Engine to EEVEE, or disable Indirect "
             "Light",
@@ -140,7 +140,7 @@ def _of_probes(scene):
             "Baked light probe volumes already add indirect light. Disable them in renders, or delete their baked data"
         )
         yield Finding(text, "PROBES", fatal=False)
-    if setup.wants_gloss(scene) and holds_reflections(scene):
+    if needs.glossy_light(scene) and holds_reflections(scene):
         text = say(
             "Light probe spheres and planes already reflect the scene, so Glossy Light is left out. Disable them in "
             "renders to use it"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..compositor import setup
-from ..host import roles
+from ..host import engines, roles
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def _repair(context):
 
 
 def _eevee(context):
-    context.scene.render.engine = "BLENDER_EEVEE"
+    context.scene.render.engine = engines.EEVEE
 
 
 def _camera(context):

@@ -16,6 +16,7 @@ import threading
 import time
 from concurrent.futures import Future
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 import bpy
 
@@ -28,19 +29,18 @@ PATIENCE = 0.05  # seconds that a call waits before it asks whether it is still 
 SURELY = 0.5  # seconds that one waits which must be made
 
 _calls = queue.SimpleQueue()  # (Future, call)
-_open = False
-_stopped = lambda: False
+_open = False  # whether anybody makes the calls; global like the queue, since the main thread is one
+_stopped = ContextVar("stopped", default=lambda: False)  # of the render whose thread this is
 
 
 @contextmanager
 def until(stopped):
     """What waits for its turn within gives up as soon as stopped() is true."""
-    global _stopped
-    before, _stopped = _stopped, stopped
+    before = _stopped.set(stopped)
     try:
         yield
     finally:
-        _stopped = before
+        _stopped.reset(before)
 
 
 def run(call):
@@ -48,14 +48,14 @@ def run(call):
     when the render is to stop, or nobody makes calls any more."""
     if _is_main():
         return call()
-    if _stopped():
+    if _stopped.get()():
         raise gather.Cancelled
     future = _leave(call)
     while not future.done():
         try:
             future.exception(timeout=PATIENCE)
         except TimeoutError:
-            if (_stopped() or not _open) and future.cancel():
+            if (_stopped.get()() or not _open) and future.cancel():
                 raise gather.Cancelled from None
     return future.result()
 

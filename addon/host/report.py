@@ -5,22 +5,31 @@ import atexit
 import ctypes
 import os
 import sys
-import time
 import traceback
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 
 import bpy
 
+from .. import gather
 from ..translations import say
 from . import main_thread, temp_files
 
-_messages = {}
-_warnings = {}
-_coverage = {}
-_scouted = {}
-_stages = {}
-_memory = {}
-_failed = False
+
+@dataclass
+class _Report:
+    """The last render of one scene. stages: seconds by stage, in order. memory: bytes by name. coverage: as covered()
+    was told."""
+
+    message: str = ""
+    warnings: list = field(default_factory=list)
+    stages: dict = field(default_factory=dict)
+    memory: dict = field(default_factory=dict)
+    coverage: tuple | None = None
+
+
+_reports = {}  # by the scene's session_uid; global, since the panel shows them when their render is over
+_failed = False  # any render; global, since it decides the exit code of the process
 wants_stages = False  # a benchmark sets it: the GPU is then waited for after each stage
 
 
@@ -36,6 +45,23 @@ class Problem(Exception):
 class Reporter:
     """What our render engines have in common: they remember what they have to say, and report what is news."""
 
+    @contextmanager
+    def failures_of(self, scene, tell=None):
+        """Whatever fails within becomes a message about `scene`, by _fail() or another way to tell."""
+        tell = tell or self._fail
+        try:
+            yield
+        except gather.Cancelled:
+            pass
+        except (Problem, gather.GpuUnavailable) as problem:
+            tell(scene, say(*problem.args))
+        except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
+            tell_traceback()
+            tell(
+                scene,
+                say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
+            )
+
     def _fail(self, scene, text):
         if fail(scene, text):
             self.report({"ERROR"}, f"Afterlight: {text}")
@@ -46,10 +72,9 @@ class Reporter:
 
 
 def begin(scene):
-    """Forget what the render before had to say."""
-    _messages.pop(scene.session_uid, None)
-    _warnings.pop(scene.session_uid, None)
-    _scouted.pop(scene.session_uid, None)
+    """Forget the messages of the render before."""
+    found = _of(scene)
+    found.message, found.warnings = "", []
 
 
 def fail(scene, text):
@@ -58,78 +83,68 @@ def fail(scene, text):
     _failed = True
     if message(scene) == text:
         return False
-    _messages[scene.session_uid] = text
+    _of(scene).message = text
     pop_up(text, say("Afterlight: the image has no indirect light"))
     return True
 
 
 def warn(scene, text):
     """Remember what the last render of `scene` had to do without, though it was lit. Returns whether that is news."""
-    known = _warnings.setdefault(scene.session_uid, [])
+    known = _of(scene).warnings
     if text in known:
         return False
     known.append(text)
     return True
 
 
-def warnings(scene):
-    """What warn() has been told since the last render began."""
-    return _warnings.get(scene.session_uid, [])
-
-
 def covered(scene, shares, seconds):
     """Keep what the last placement of views gave: the share of the light that the main view sees, and with each
     view."""
-    _coverage[scene.session_uid] = shares, seconds
-
-
-def coverage(scene):
-    """(shares, seconds) as covered() was told, or None."""
-    return _coverage.get(scene.session_uid)
-
-
-def scouted(scene, seconds):
-    """The views of `scene` are posed, which took so long; EEVEE renders them next."""
-    _scouted[scene.session_uid] = seconds, time.perf_counter()
-
-
-def views_stages(scene):
-    """Seconds by stage, from the scout's beginning until now, of the render that goes on; empty where it has no views.
-    Once."""
-    if scene.session_uid not in _scouted:
-        return {}
-    seconds, since = _scouted.pop(scene.session_uid)
-    return {"place views": seconds, "EEVEE, views": time.perf_counter() - since}
-
-
-def message(scene):
-    """Why the last render of `scene` was not lit; an empty string where it was."""
-    return _messages.get(scene.session_uid, "")
+    _of(scene).coverage = shares, seconds
 
 
 def timed(scene, stages):
     """Keep the seconds that each stage of the last render took, in order."""
-    _stages[scene.session_uid] = stages
+    _of(scene).stages = stages
+
+
+def took(scene, memory):
+    """Keep the bytes that the last render took at most, by the name of what they are."""
+    _of(scene).memory = memory
+
+
+def message(scene):
+    """Why the last render of `scene` was not lit; an empty string where it was."""
+    return _of(scene).message
+
+
+def warnings(scene):
+    """What warn() has been told since the last render began."""
+    return _of(scene).warnings
+
+
+def coverage(scene):
+    """(shares, seconds) as covered() was told, or None."""
+    return _of(scene).coverage
 
 
 def stages(scene):
     """Seconds by stage of the last render of `scene`; empty where there was none."""
-    return _stages.get(scene.session_uid, {})
+    return _of(scene).stages
+
+
+def memory(scene):
+    """Bytes by name of the last render of `scene`; empty where there was none."""
+    return _of(scene).memory
+
+
+def _of(scene):
+    return _reports.setdefault(scene.session_uid, _Report())
 
 
 def in_words(name):
     """The name of a stage or of what memory is for, as a label has it."""
     return name[:1].upper() + name[1:].replace("_", " ")
-
-
-def took(scene, memory):
-    """Keep the bytes that the last render took at most, by the name of what they are."""
-    _memory[scene.session_uid] = memory
-
-
-def memory(scene):
-    """Bytes by name of the last render of `scene`; empty where there was none."""
-    return _memory.get(scene.session_uid, {})
 
 
 def tell(text, stream=None):
@@ -189,9 +204,4 @@ def unregister():
     # At Blender's exit extensions are switched off before Python ends: a failure must outlive that.
     if not _failed:
         atexit.unregister(_exit_code)
-    _messages.clear()
-    _warnings.clear()
-    _coverage.clear()
-    _scouted.clear()
-    _stages.clear()
-    _memory.clear()
+    _reports.clear()

@@ -2,9 +2,9 @@
 """The render engine of the helper scene. Blender calls it after the user's scene has been rendered by EEVEE and before
 the compositor runs; what it returns is the indirect light of that very frame.
 
-A frame, from passes to picture: update() looks at the scene while Blender keeps it still; render() saves the passes,
-loads those of the view layer at hand, gathers (gather/paper.py) and hands the result back as the pass Indirect. Where
-a frame is lit again (relight.py), the scene itself has this engine for a moment and hands EEVEE's passes back.
+A frame, from passes to picture: update() looks at the scene while Blender keeps it still; render() has the passes saved
+(frames.py), loads those of the view layer at hand, gathers (gather/radiosity.py, gather/paper.py) and hands the result
+back as the pass Indirect.
 """
 
 import time
@@ -14,163 +14,108 @@ import bpy
 import numpy as np
 
 from .. import gather, properties
-from ..compositor import setup, view_scenes
 from ..compositor.nodes import GLOSSY_PASS, PASS
-from ..compositor.setup import ENGINE
 from ..diagnosis import checks
-from ..host import main_thread, report, roles
+from ..host import engines, main_thread, report, roles
 from ..host.report import Problem
-from ..scene import animation, media, passes, roughness, transmittance, world_light
+from ..scene import cameras, frame_store, needs, passes, roughness, transmittance, world_light
 from ..translations import say
-from . import histories, relight
+from . import frames
+from . import job as jobs
 
-TELL = 0.2  # seconds between two words on progress: Blender draws its window at each
+PROGRESS_INTERVAL = 0.2  # seconds between progress updates, at least: Blender draws its window at each
 
 
 @dataclass
 class Shot:
-    """What a frame of one view layer needs to know of the scene, and the scene itself."""
+    """A view layer of a frame: all that its gather needs to know of the scene, and the scene itself."""
 
     scene: bpy.types.Scene
     layer: str
-    window: tuple
-    again: relight.Kept = None  # the frame whose light is gathered again, where that is what goes on
-    view_scenes: int = 0  # how many the settings ask for
-    camera: gather.Camera = None
-    properties: gather.Settings = None
-    goes_on: bool = False  # whether frames of an animation are averaged
+    window: tuple  # the part of the full frame that is rendered, as cameras.window() has it
+    job: jobs.Job
+    frame: frames.RenderedFrame | frames.KeptFrame
     problem: str = ""
     unticked: bool = False  # by a script, since the render began
-    shines: bool = False  # whether the light off glossy surfaces is wanted
-    in_front: bool = False  # whether something may take of the light on its way (media.py)
-    seconds: dict = field(default_factory=dict)  # by stage, over the frame's view layers so far
+    camera: gather.Camera | None = None
+    settings: gather.Settings | gather.Draws | None = None
+    averages: bool = False  # whether frames of an animation are averaged
+    glossy: bool = False  # whether the light off glossy surfaces is wanted
     memory: dict = field(default_factory=dict)  # bytes at the fullest moment of the frame, by what they hold
 
     def spent(self, stage, seconds):
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + seconds
+        """Count the time of a stage to the frame's."""
+        self.frame.seconds[stage] = self.frame.seconds.get(stage, 0.0) + seconds
 
 
 class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
-    bl_idname = ENGINE
+    bl_idname = engines.LIGHT
     bl_label = "Afterlight (used by its helper scenes)"
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
     bl_use_gpu_context = bpy.app.background  # in a window the GPU is taken by turns (main_thread.py)
 
-    idle = False  # render nothing: handlers.py has a use for an empty render
+    is_off = False  # the extension goes: a render that is under way is lit no more
+    frame = None  # between its first view layer and its last
     shot = None
-    view_scenes = ()  # what views.save() gave for the frame
-    told = "", 0.0  # stage that Blender shows, and since when
-    file = ""  # the saved passes of the frame, between its first view layer and its last
+    shown = "", 0.0  # the stage of which Blender shows the progress, and since when
 
     def update_render_passes(self, scene, layer):
-        if relight.is_replayed(scene):
-            relight.register_passes(self, scene, layer)
-            return
         self.register_pass(scene, layer, PASS, 3, "RGB", "COLOR")
         # Asked by what the file says, since Blender asks while it is loaded: a pass that is not offered then loses its
         # links.
-        if any(lit.afterlight.helper == scene and setup.wants_gloss(lit) for lit in bpy.data.scenes):
+        if any(lit.afterlight.helper == scene and needs.glossy_light(lit) for lit in bpy.data.scenes):
             self.register_pass(scene, layer, GLOSSY_PASS, 3, "RGB", "COLOR")
 
     def update(self, data, depsgraph):
         """Look at the scene: Blender holds the interface off while this runs, so it is short."""
-        before, self.shot = self.shot, None
-        if self.idle or relight.is_replayed(depsgraph.scene):
+        self.shot = None
+        if self.is_off or jobs.is_empty_render():
             return
-        source = roles.source(depsgraph.scene)
-        if source is None:
+        scene = roles.source(depsgraph.scene)
+        if scene is None:
             self._fail(
                 depsgraph.scene,
                 say(
-                    "This render engine is only for Afterlight's helper scenes. Set Render Engine to EEVEE and enable "
-                    "Indirect Light"
+                    "This render engine is only for Afterlight's helper scenes. Set Render Engine to EEVEE and "
+                    "enable Indirect Light"
                 ),
             )
             return
-        again = relight.kept(source) if relight.is_replayed(source) else None
-        self.shot = shot = Shot(
-            source, depsgraph.view_layer.name, passes.window(source)[0], again, view_scenes.wanted(source)
-        )
-        if before and (self.file or again):  # another view layer of the same frame
-            shot.seconds = before.seconds
-        if not source.afterlight.enabled:
+        job = jobs.current(scene)
+        frame = self.frame = self.frame or frames.of(job, scene)
+        self.shot = shot = Shot(scene, depsgraph.view_layer.name, cameras.window(scene)[0], job, frame)
+        if not scene.afterlight.enabled:
             shot.unticked = True
             return
-        shot.problem = next((finding.text for finding in checks.findings(source) if finding.fatal), "")
-        if again and not shot.problem:
-            shot.problem = report.message(source)  # EEVEE's passes could not be handed back: there is nothing to light
+        shot.problem = next((finding.text for finding in checks.findings(scene) if finding.fatal), "") or frame.problem
         if not shot.problem:
-            frame = again.frame if again else source.frame_current
-            shot.goes_on = not again and histories.goes_on(source)
-            shot.settings = properties.light_settings(source.afterlight, frame, shot.goes_on)
-            shot.shines = setup.wants_gloss(source) and not checks.holds_reflections(source)
-            shot.in_front = again.in_front if again else media.present(source)
-            shot.camera = again.camera if again else self._look(depsgraph, source, shot.layer)
+            shot.averages = frame.averages()
+            shot.settings = properties.light_settings(scene.afterlight, frame.number, shot.averages)
+            shot.glossy = needs.glossy_light(scene) and not checks.holds_reflections(scene)
+            shot.camera = frame.look(self, depsgraph, shot.layer)
 
     def render(self, depsgraph):
         """Gather, and hand back the pass. Whatever happens the pass is there, black if it must be."""
-        shot, scene = self.shot, depsgraph.scene
+        shot = self.shot
         if shot is None:
-            if relight.is_replayed(scene):
-                self._attempt(scene, lambda: relight.replay(self, scene, depsgraph.view_layer.name))
             return
-        pictures = self._attempt(shot.scene, lambda: self._gather(shot, depsgraph)) or {}
+        pictures = {}
+        with self.failures_of(shot.scene), main_thread.until(self.test_break):
+            pictures = self._light(shot, depsgraph)
         start = time.perf_counter()
         self._hand_back(shot, pictures)
         shot.spent("hand back", time.perf_counter() - start)
-        report.timed(shot.scene, shot.seconds)
+        report.timed(shot.scene, shot.frame.seconds)
         report.took(shot.scene, shot.memory)
 
-    def _attempt(self, scene, work):
-        """work(), or None where it fails: then `scene`'s report says why."""
-        try:
-            with main_thread.until(self.test_break):
-                return work()
-        except gather.Cancelled:
-            pass
-        except (Problem, gather.GpuUnavailable) as problem:
-            self._fail(scene, say(*problem.args))
-        except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
-            report.tell_traceback()
-            self._fail(
-                scene,
-                say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
-            )
-
     def render_frame_finish(self):
-        """All view layers of the frame are done: their passes are kept, to be lit again."""
-        if self.file and self.shot and self.shot.camera:
-            relight.keep(self.shot.scene, self.file, self.shot.camera, self.views, self.shot.views, self.shot.in_front)
-        elif self.file:
-            for path in (self.file, *(view.path for view in self.views)):
-                passes.discard(path)
-        self.file, self.views = "", ()
+        """All view layers of the frame have their light."""
+        frame, self.frame = self.frame, None
+        if frame is not None and not self.is_off:
+            frame.done()
 
-    def _look(self, depsgraph, source, layer):
-        """gather.Camera of the frame's view layer. `source`'s camera is evaluated through our own depsgraph, with
-        nothing else of the scene but what moves the camera."""
-        helper, render = depsgraph.scene, source.render
-        same_time = (helper.render.frame_map_old, helper.render.frame_map_new, helper.frame_subframe) == (
-            render.frame_map_old,
-            render.frame_map_new,
-            source.frame_subframe,
-        )
-        if helper.camera == source.camera and same_time:
-            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source, layer)
-        own = helper.camera
-
-        def set_up():
-            helper.render.frame_map_old, helper.render.frame_map_new = render.frame_map_old, render.frame_map_new
-            helper.camera = source.camera
-
-        main_thread.surely(set_up)
-        try:
-            self.frame_set(source.frame_current, source.frame_subframe)
-            return passes.camera(source.camera.evaluated_get(depsgraph), depsgraph, source, layer)
-        finally:
-            main_thread.surely(lambda: setattr(helper, "camera", own))
-
-    def _gather(self, shot, depsgraph):
+    def _light(self, shot, depsgraph):
+        """{pass: (H, W, 3) float32, bottom row first}: the light of a view layer, as it reaches the camera."""
         if shot.unticked:
             self._warn(
                 shot.scene,
@@ -182,52 +127,51 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
             raise gather.Cancelled
         if shot.problem:
             raise Problem("{}", shot.problem)
-        shot.seconds |= report.views_stages(shot.scene)
+        shot.frame.seconds.update(shot.job.view_stages(shot.scene))
         start = time.perf_counter()
-        if not self.file and not shot.again:  # the first view layer of the frame saves the passes of all
-            if self._progress("Saving passes", 0.0):
-                raise gather.Cancelled
-            relight.forget(shot.scene.session_uid, but=animation.files())
-            self.file = passes.save_once(shot.scene)
-            self.views = view_scenes.save(shot.scene, depsgraph, lambda text: self._warn(shot.scene, text))
-            shot.spent("write passes", time.perf_counter() - start)
-        path = shot.again.path if shot.again else self.file
-        main = gather.View(
-            lambda: passes.load(path, shot.layer, shot.window, shot.scene.frame_step),
-            shot.camera,
-            lambda: roughness.shine(path, shot.layer, shot.window),
+        shot.frame.save(
+            depsgraph, lambda: self._progress("Saving passes", 0.0), lambda text: self._warn(shot.scene, text)
         )
-        saved = shot.again.views if shot.again else self.views
-        if shot.again and shot.views > shot.again.wanted:
-            self._warn(
-                shot.scene,
-                say(
-                    "The last render had {} further views, but the settings now have {}. Press F12 to render all of "
-                    "them",
-                    len(saved),
-                    shot.views,
-                ),
-            )
-        further = [gather.View(view.load, view.camera, view.shine) for view in saved]
+        if not shot.job.replayed:
+            shot.spent("write passes", time.perf_counter() - start)
+        views = self._views(shot)
+        pictures = self._gather(shot, views, depsgraph)
+        return self._let_through(shot, pictures)
+
+    def _views(self, shot):
+        """[gather.View]: the main one, and those of the frame."""
+        frame, window = shot.frame, shot.window
+        main = gather.View(
+            lambda: passes.load(frame.path, shot.layer, window, shot.scene.frame_step),
+            shot.camera,
+            lambda: roughness.shine(frame.path, shot.layer, window),
+        )
         shot.memory = {
             "GPU memory": gather.gpu_bytes(
-                *shot.window[2:], shot.settings, len(further), shines=shot.shines, averages=shot.goes_on
+                *window[2:], shot.settings, len(frame.views), shines=shot.glossy, averages=shot.averages
             ),
-            "passes file": sum(map(passes.size, (path, *(view.path for view in saved)))),
+            "passes file": sum(map(frame_store.size, (frame.path, *(view.path for view in frame.views)))),
         }
-        start = time.perf_counter()
-        timed, broken = {} if report.wants_stages else None, {}
+        return [main, *(gather.View(view.load, view.camera, view.shine) for view in frame.views)]
+
+    def _gather(self, shot, views, depsgraph):
+        """{pass: (H, W, 3)}: the light that the surfaces send."""
+        start, timed, broken = time.perf_counter(), {} if report.wants_stages else None, {}
         options = {"progress": self._progress, "timings": timed, "broken": broken}
-        if isinstance(shot.settings, gather.Draws):
-            sky = world_light.light(depsgraph) if shot.scene.afterlight.use_world_shadow else None
-            gloss = self._gloss(shot, path)
-            past = histories.before(shot.scene, shot.layer, shot.settings) if shot.goes_on else None
-            picture = gather.gather_views([main, *further], shot.settings, sky, history=past, gloss=gloss, **options)
-            if past:
-                histories.keep(shot.scene, shot.layer, shot.settings, past)
-            picture = {PASS: picture} | ({GLOSSY_PASS: gloss.picture} if gloss else {})
+        scene, settings = shot.scene, shot.settings
+        if isinstance(settings, gather.Draws):
+            world = world_light.light(depsgraph, shot.job.worlds) if scene.afterlight.use_world_shadow else None
+            gloss, history = self._gloss(shot), None
+            if shot.averages:
+                history = shot.job.histories.before(scene, shot.layer, settings)
+            picture = gather.gather_views(views, settings, world, history=history, gloss=gloss, **options)
+            if history:
+                shot.job.histories.keep(scene, shot.layer, settings, history)
+            pictures = {PASS: picture} | ({GLOSSY_PASS: gloss.picture} if gloss else {})
         else:
-            picture = {PASS: gather.gather_indirect(main.passes, shot.camera, shot.settings, **options)}
+            pictures = {PASS: gather.gather_indirect(views[0].passes, shot.camera, settings, **options)}
+        for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
+            shot.spent(stage, seconds)
         for name, count in broken.items():
             self.report(
                 {"WARNING"},
@@ -239,27 +183,25 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
                     shot.layer,
                 ),
             )
-        picture = self._let_through(shot, path, picture)
-        for stage, seconds in (timed or {"gather on the GPU": time.perf_counter() - start}).items():
-            shot.spent(stage, seconds)
-        return picture
+        return pictures
 
-    def _gloss(self, shot, path):
+    def _gloss(self, shot):
         """gather.Gloss of the frame where it is wanted, else None."""
-        if not shot.shines:
+        if not shot.glossy:
             return None
-        gloss = roughness.load(path, shot.layer, shot.window)
+        gloss = roughness.load(shot.frame.path, shot.layer, shot.window)
         if gloss is None:
             self._warn(shot.scene, say("The last render has no passes for Glossy Light. Press F12 to render them"))
         return gloss
 
-    def _let_through(self, shot, path, pictures):
-        """{pass: (H, W, 3)}: the light as it reaches the camera, through what media.py knows of."""
-        if not shot.in_front:
+    def _let_through(self, shot, pictures):
+        """{pass: (H, W, 3)}: the light as it reaches the camera, through what scene/media.py knows of."""
+        if not shot.frame.in_front:
             return pictures
         start, scene = time.perf_counter(), shot.scene
         blurred = scene.render.use_motion_blur or scene.camera.data.dof.use_dof
-        share = transmittance.load(path, shot.layer, shot.window, int(scene.eevee.volumetric_tile_size), blurred)
+        cell = int(scene.eevee.volumetric_tile_size)
+        share = transmittance.load(shot.frame.path, shot.layer, shot.window, cell, blurred)
         if share is not None:
             pictures = {name: picture * share for name, picture in pictures.items()}
         shot.spent("hand back", time.perf_counter() - start)
@@ -267,14 +209,11 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
 
     def _progress(self, stage, fraction):
         now = time.perf_counter()
-        if stage != self.told[0] or now > self.told[1] + TELL:
-            self.told = stage, now
-            self._tell(f"{say(report.in_words(stage))}, {fraction:.0%}", fraction)
+        if stage != self.shown[0] or now > self.shown[1] + PROGRESS_INTERVAL:
+            self.shown = stage, now
+            self.update_stats("Afterlight", f"{say(report.in_words(stage))}, {fraction:.0%}")
+            self.update_progress(fraction)
         return self.test_break()
-
-    def _tell(self, text, fraction):
-        self.update_stats("Afterlight", text)
-        self.update_progress(fraction)
 
     def _hand_back(self, shot, pictures):
         """The indirect light into our passes of the layer, by their names; black where there is none."""
@@ -290,13 +229,13 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
 
 
 def register():
-    AfterlightEngine.idle = False
+    AfterlightEngine.is_off = False
     bpy.utils.register_class(AfterlightEngine)
 
 
 def unregister():
     """A render that is under way is lit no more; Blender crashes if its engine goes before it ends."""
-    AfterlightEngine.idle = True
+    AfterlightEngine.is_off = True
     main_thread.after_render(_let_go)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's own events that the wiring has to follow."""
+"""Blender's own events: edits that the helper scenes and nodes follow, and the beginning and end of renders."""
 
 import bpy
 from bpy.app.handlers import persistent
@@ -7,10 +7,10 @@ from bpy.app.handlers import persistent
 from ..compositor import nodes, setup, view_scenes
 from ..diagnosis import checks
 from ..host import events, main_thread, render_lock, report, roles, temp_files
-from ..scene import animation, passes, world_light
+from ..scene import frame_store
 from ..translations import say
-from . import histories, relight
-from .engine import AfterlightEngine
+from . import frames, relight
+from . import job as jobs
 
 
 def _lit_scenes():
@@ -49,40 +49,36 @@ def follow_all(*_):
         setup.follow(scene)
     for orphan in roles.orphans():
         setup.remove_orphan(orphan)
-    relight.forget_deleted()
+    frames.forget_deleted()
 
 
 @persistent
 def after_load(*_):
     """A file was loaded."""
-    render_lock.reset()
+    _reset()
     follow_all()
 
 
 @persistent
 def before_render(scene, *_):
-    """Say what will keep the light out even where our engine is never called to say it.
+    """A render begins. Say what will keep the light out even where our engine is never called to say it.
 
     Without a window nothing has followed the edits of a script, and nobody can press Repair: it is done here."""
     if bpy.app.background:
         follow_all()
     render_lock.begin()
+    job = jobs.begin(scene, relight.replayed(scene))
     if scene.afterlight.enabled:
-        main_thread.surely(lambda: _begin(scene))  # in a window Blender calls this in the render's thread
+        main_thread.surely(lambda: _begin(job, scene))  # in a window Blender calls this in the render's thread
     events.call_last("render_init", render_lock.lock)  # scripts may still tick the box in handlers of theirs
 
 
-def _begin(scene):
+def _begin(job, scene):
     report.begin(scene)
-    view_scenes.reset()
-    animation.begin()
-    histories.begin(scene)
-    world_light.forget()
-    passes.discard_early()
-    view_scenes.begin(scene)
+    view_scenes.leave_all_out()
     if bpy.app.background and scene.library is None:
         setup.connect(scene)
-        _ensure_render_result(scene.afterlight.helper)
+        _ensure_render_result(job, scene.afterlight.helper)
     elif scene.library is None and scene.afterlight.helper:  # nothing has followed what became of its materials
         setup.follow_passes(scene)
     for finding in checks.findings(scene):
@@ -90,13 +86,14 @@ def _begin(scene):
             report.fail(scene, finding.text)
         report.tell(f"Afterlight: {finding.text}")
     if report.message(scene):
-        _mute(scene)
+        _mute(job, scene)
 
 
 @persistent
 def after_render(*_):
     """Complete or cancelled."""
-    main_thread.surely(_end)
+    job = jobs.end()
+    main_thread.surely(lambda: _end(job))
     waited = render_lock.end()
     if waited:
         main_thread.later(lambda: main_thread.after_render(lambda: _catch_up(waited)))
@@ -110,39 +107,38 @@ def _catch_up(waited):
         (setup.connect if scene.afterlight.enabled else setup.disconnect)(scene)
 
 
-def _end():
-    """Undo what views and _mute() did to the file."""
-    view_scenes.reset()
-    animation.begin()
-    histories.end()
-    world_light.forget()
-    passes.discard_early()
-    while _muted:
-        tree, node = _muted.pop()
+def _end(job):
+    """Undo what the views and _mute() did to the file."""
+    view_scenes.leave_all_out()
+    for tree, node in job.muted if job else ():
         if tree in bpy.data.node_groups and node in bpy.data.node_groups[tree].nodes:
             bpy.data.node_groups[tree].nodes[node].mute = False
 
 
-def _mute(scene):
+def _mute(job, scene):
     """Keep our light out of this render: where our engine is not called, Blender would add the light of the last."""
     for node in nodes.all_nodes(scene.compositing_node_group):
         if nodes.role(node) == "add" and not node.mute:
             node.mute = True
-            _muted.append((node.id_data.name, node.name))
+            job.muted.append((node.id_data.name, node.name))
 
 
-def _ensure_render_result(helper):
+def _ensure_render_result(job, helper):
     """Make the image through which Python can save passes. F12 makes it by itself; `blender -b -f` and `-a` do not,
     and only Blender's render operator can: here with nothing to render."""
-    if passes.render_result() is None:
-        AfterlightEngine.idle = True
+    if frame_store.render_result() is None:
+        job.is_empty = True
         try:
             bpy.ops.render.render(scene=helper.name)
         finally:
-            AfterlightEngine.idle = False
+            job.is_empty = False
 
 
-_muted = []  # names of trees and nodes
+def _reset():
+    """Another file is loaded, or the extension goes."""
+    jobs.end_all()
+    render_lock.reset()
+
 
 HANDLERS = (
     ("depsgraph_update_post", follow_edits),
@@ -166,4 +162,4 @@ def unregister():
     temp_files.unregister()
     report.unregister()
     events.ignore(HANDLERS)
-    render_lock.reset()
+    _reset()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which frame's light goes on into which: the histories of an animation that is being rendered.
+"""Which earlier frame's light a frame of an animation may reuse.
 
 A history lives within one render job, from one frame to the next that the scene's frame step comes to. Whatever else
 comes between makes a new one, and a frame without a history is gathered as often as makes up for it
@@ -12,47 +12,50 @@ from dataclasses import dataclass, replace
 import bpy
 
 from .. import gather
-from ..scene import passes
+from ..scene import cameras, needs
 
 ANIMATION_FLAGS = {"-a", "--render-anim", "-f", "--render-frame"}  # of Blender's command line
 
-_known = {}  # Known, by the lit scene's session_uid and the view layer's name
-_first = None  # the frame at which a render began that may be of a single frame; None where it surely is an animation
-
 
 @dataclass(frozen=True, eq=False)
-class Known:
-    """What a frame left. alike: all that must be the same for its light to go on."""
+class Left:
+    """The light that a frame left. alike: all that must be the same for the next frame to reuse it."""
 
     frame: int
     alike: tuple
-    gather: gather.History
+    light: gather.History
 
 
-def begin(scene):
-    """A render begins: nothing is known."""
-    global _first
-    _known.clear()
-    _first = None if _asked_for_animation() else scene.frame_current
+class Histories:
+    """Those of one render job. first: the frame that it begins with."""
 
+    def __init__(self, first):
+        self._left = {}  # Left, by the lit scene's session_uid and the view layer's name
+        self._first = None if _asked_for_animation() else first  # None as soon as it surely is an animation
 
-def end():
-    """A render is over."""
-    _known.clear()
+    def averages(self, scene):
+        """Whether the light of the frame at hand is averaged with that of others: it is of an animation, and the
+        settings say so."""
+        if scene.frame_current != self._first:
+            self._first = None
+        return self._first is None and needs.averages_frames(scene.afterlight)
 
+    def before(self, scene, layer, settings):
+        """gather.History for a frame of a view layer: that of the frame before, or an empty one. settings:
+        gather.Draws."""
+        found = self._left.pop((scene.session_uid, layer), None)
+        if found and found.frame == scene.frame_current - scene.frame_step and found.alike == _alike(scene, settings):
+            return found.light
+        return gather.History()
 
-def goes_on(scene):
-    """Whether the light of the frame at hand is averaged with that of others: it is of an animation, and the settings
-    say so."""
-    global _first
-    if scene.frame_current != _first:
-        _first = None
-    return _first is None and passes.averages_frames(scene.afterlight)
+    def keep(self, scene, layer, settings, light):
+        """The frame is lit, and has left its gather.History."""
+        self._left[scene.session_uid, layer] = Left(scene.frame_current, _alike(scene, settings), light)
 
 
 def _asked_for_animation():
-    """Blender does not tell an engine of the compositor's scenes. A script that asks for an animation that begins at
-    the current frame is the one case that goes unseen: its first frame then counts as a single one."""
+    """Whether Blender was asked for an animation, which it does not tell an engine of the compositor's scenes. A script
+    that asks for one that begins at the current frame goes unseen: its first frame then counts as a single one."""
     if bpy.app.background:
         flags = sys.argv[: sys.argv.index("--")] if "--" in sys.argv else sys.argv
         return not ANIMATION_FLAGS.isdisjoint(flags)
@@ -63,23 +66,10 @@ def _asked_for_animation():
     )
 
 
-def before(scene, layer, settings):
-    """gather.History for a frame of a view layer: that of the frame before, or an empty one. settings: gather.Draws."""
-    found = _known.pop((scene.session_uid, layer), None)
-    if found and found.frame == scene.frame_current - scene.frame_step and found.alike == _alike(scene, settings):
-        return found.light
-    return gather.History()
-
-
-def keep(scene, layer, settings, found):
-    """The frame is lit, and has left its gather.History."""
-    _known[scene.session_uid, layer] = Known(scene.frame_current, _alike(scene, settings), found)
-
-
 def _alike(scene, settings):
     """Strength may change from frame to frame, since it is no part of what is kept; another camera is a cut."""
     return (
-        passes.window(scene),
+        cameras.window(scene),
         scene.camera.session_uid,
         replace(settings, seed=0, strength=1.0),
         scene.frame_step,

@@ -1,115 +1,52 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instant re-light: the passes of the last frame are kept, and its light is gathered again without EEVEE.
+"""Update Indirect Light: the light of a kept frame (frames.py) is gathered again, without EEVEE.
 
 Blender composites only as the last step of a render, so a render is what happens: for a moment the scene's engine is
-ours, and hands back the very passes that EEVEE had made. The helper scene and the compositor then follow as ever.
+one that hands back the very passes that EEVEE had made. The helper scene and the compositor then follow as ever.
 """
-
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-from .. import gather
 from ..compositor import freestyle
-from ..compositor.setup import ENGINE
-from ..host import events, report, roles
+from ..host import engines, events, main_thread, report
 from ..host.report import Problem
-from ..scene import passes
+from ..scene import cameras, exr, frame_store
 from ..translations import say
+from . import frames
 
-EEVEE = "BLENDER_EEVEE"  # the only engine that is ever exchanged for ours
-
-
-@dataclass(frozen=True)
-class Kept:
-    """The passes of a finished frame. path, size: the file that passes.save() wrote, and its bytes. window, full: as
-    passes.window() gave them. frame: its number. layers: {view layer: [(pass, channels)]} of all that the file
-    holds."""
-
-    path: str
-    size: int
-    window: tuple
-    full: tuple
-    frame: int
-    camera: gather.Camera
-    layers: dict
-    views: tuple = ()  # of views.Saved
-    wanted: int = 0  # how many views the settings asked for
-    in_front: bool = False  # whether something may have taken of the light on its way (media.py)
-
-
-_kept = {}  # by the scene's session_uid
-_exchanged = {}  # session_uids of scenes that have our engine for a moment: whether it has been called by now
-
-
-def keep(scene, path, camera, views=(), wanted=0, in_front=False):
-    """Keep the file of a frame that is done; one that was kept before goes, and so does a file that can't be read."""
-    forget(scene.session_uid, but=(path, *(view.path for view in views)))
-    try:
-        layers = passes.contents(path, [layer.name for layer in scene.view_layers])
-    except Problem:  # the gather has said so
-        passes.discard(path)
-        return
-    window, full = passes.window(scene)
-    _kept[scene.session_uid] = Kept(
-        path, passes.size(path), window, full, scene.frame_current, camera, layers, tuple(views), wanted, in_front
-    )
-
-
-def kept(scene):
-    """Kept of a scene, or None."""
-    return _kept.get(scene.session_uid)
-
-
-def forget(uid, but=()):
-    """Remove the kept file of the scene with this session_uid, and those of its views, unless they are in `but`."""
-    gone = _kept.pop(uid, None)
-    for path in (gone.path, *(view.path for view in gone.views)) if gone else ():
-        if path not in but:
-            passes.discard(path)
-
-
-@persistent
-def forget_all(*_):
-    """Another file is loaded, or the extension goes."""
-    for uid in list(_kept):
-        forget(uid)
-
-
-def forget_deleted():
-    """Let go of frames whose scene is no longer there."""
-    for uid in _kept.keys() - {scene.session_uid for scene in bpy.data.scenes}:
-        forget(uid)
+# Whether the engine has been called by now, by the session_uid of the scenes that have it; global, since Blender's
+# operator, its engine and a timer take turns at it.
+_called = {}
 
 
 def obstacle(scene):
     """Why the light of `scene` can't be gathered again, as a sentence for people; empty where it can."""
-    found = kept(scene)
+    found = frames.kept(scene)
     if found is None:
         return say("There are no passes of a render of this scene. Press F12 first")
-    if scene.render.engine != EEVEE:
+    if scene.render.engine != engines.EEVEE:
         return say("Indirect Light needs EEVEE. Set Render Engine to EEVEE")
-    if passes.size(found.path) != found.size or not all(passes.size(view.path) for view in found.views):
+    if frame_store.size(found.path) != found.size or not all(frame_store.size(view.path) for view in found.views):
         return say("The passes of the last render were deleted from the temporary folder. Press F12")
-    if (found.window, found.full) != passes.window(scene):
+    if (found.window, found.full) != cameras.window(scene):
         return say("The resolution or the render region has changed since the last render. Press F12")
     if any(layer.use and layer.name not in found.layers for layer in scene.view_layers):
         return say("View layers were added or renamed since the last render. Press F12")
     return ""
 
 
-def is_replayed(scene):
-    """Whether the render that is going on repeats a kept frame of `scene`."""
-    return scene.session_uid in _exchanged
+def replayed(scene):
+    """frames.Kept that the render of `scene` is to repeat, or None where EEVEE renders a new one."""
+    return frames.kept(scene) if scene.session_uid in _called else None
 
 
 def exchange(scene):
     """Let the next render of `scene` repeat its kept frame. restore() must follow."""
-    _exchanged[scene.session_uid] = False
+    _called[scene.session_uid] = False
     freestyle.hold(scene)
-    scene.render.engine = ENGINE
+    scene.render.engine = engines.REPLAY
 
 
 @persistent
@@ -117,45 +54,56 @@ def restore(*_):
     """Give every scene its own engine again. A render that goes on keeps the one that it began with."""
     for scene in bpy.data.scenes:
         freestyle.release(scene)
-        if scene.render.engine == ENGINE and not roles.is_helper(scene):
-            scene.render.engine = EEVEE
+        if scene.render.engine == engines.REPLAY:
+            scene.render.engine = engines.EEVEE
 
 
 def finish():
     """The render is over."""
     restore()
-    _exchanged.clear()
+    _called.clear()
 
 
-def register_passes(engine, scene, layer):
-    """What a Render Layers node of a scene with our engine offers: what the kept frame holds."""
-    found = kept(scene)
-    for name, channels in found.layers.get(layer.name, ()) if found else ():
-        kind = "VALUE" if len(channels) == 1 else "COLOR" if channels.upper().startswith("RGB") else "VECTOR"
-        engine.register_pass(scene, layer, name, len(channels), channels, kind)
+class AfterlightReplay(report.Reporter, bpy.types.RenderEngine):
+    bl_idname = engines.REPLAY
+    bl_label = "Afterlight's last render (used to update its light)"
+    bl_use_gpu_context = False
 
+    def update_render_passes(self, scene, layer):
+        """Offer what the kept frame holds."""
+        found = frames.kept(scene)
+        for name, channels in found.layers.get(layer.name, ()) if found else ():
+            kind = "VALUE" if len(channels) == 1 else "COLOR" if channels.upper().startswith("RGB") else "VECTOR"
+            self.register_pass(scene, layer, name, len(channels), channels, kind)
 
-def replay(engine, scene, layer):
-    """Hand the passes of a view layer back, as EEVEE had made them. Raises status.Problem where the file is gone."""
-    _exchanged[scene.session_uid] = True
-    found = kept(scene)
-    arrays = passes.read(found.path, found.window)
-    *_, width, height = found.window
-    result = engine.begin_result(0, 0, width, height, layer=layer)
-    try:
-        for name, channels in found.layers[layer]:
-            pixels = np.stack([arrays(f"{layer}.{name}.{channel}")[::-1] for channel in channels], axis=-1)
-            result.layers[0].passes[name].rect.foreach_set(pixels.ravel())
-    finally:
-        engine.end_result(result)
+    def render(self, depsgraph):
+        """Hand the passes of a view layer back, as EEVEE had made them."""
+        scene, layer = depsgraph.scene, depsgraph.view_layer.name
+        _called[scene.session_uid] = True
+        with self.failures_of(scene), main_thread.until(self.test_break):
+            found = frames.kept(scene)
+            if found is None:
+                raise Problem("There are no passes of a render of this scene. Press F12 first")
+            self._hand_back(found, layer)
+
+    def _hand_back(self, found, layer):
+        arrays = exr.read(found.path, found.window)
+        *_, width, height = found.window
+        result = self.begin_result(0, 0, width, height, layer=layer)
+        try:
+            for name, channels in found.layers[layer]:
+                pixels = np.stack([arrays(f"{layer}.{name}.{channel}")[::-1] for channel in channels], axis=-1)
+                result.layers[0].passes[name].rect.foreach_set(pixels.ravel())
+        finally:
+            self.end_result(result)
 
 
 class AFTERLIGHT_OT_update(bpy.types.Operator):
     bl_idname = "afterlight.update"
     bl_label = "Update Indirect Light"
     bl_description = (
-        "Compute the indirect light of the last render again with the current settings, and composite the image. EEVEE "
-        "does not render again, so changes of the scene since then are not included"
+        "Compute the indirect light of the last render again with the current settings, and composite "
+        "the image. EEVEE does not render again, so changes of the scene since then are not included"
     )
 
     @classmethod
@@ -203,16 +151,16 @@ class AFTERLIGHT_OT_free_passes(bpy.types.Operator):
     bl_idname = "afterlight.free_passes"
     bl_label = "Free Kept Passes"
     bl_description = (
-        "Delete the passes of the last render from the temporary folder, where they are kept until Blender quits. "
-        "Updating the light then requires a new render"
+        "Delete the passes of the last render from the temporary folder, where they are kept until "
+        "Blender quits. Updating the light then requires a new render"
     )
 
     @classmethod
     def poll(cls, context):
-        return kept(context.scene) is not None
+        return frames.kept(context.scene) is not None
 
     def execute(self, context):
-        forget(context.scene.session_uid)
+        frames.forget(context.scene.session_uid)
         return {"FINISHED"}
 
 
@@ -221,24 +169,33 @@ def _watch():
     if not bpy.app.is_job_running("RENDER"):
         finish()
         return None
-    if any(_exchanged.values()):
+    if any(_called.values()):
         restore()
     return 0.02
 
 
-HANDLERS = (("save_pre", restore), ("load_pre", forget_all), ("undo_post", restore), ("redo_post", restore))
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+HANDLERS = (
+    ("save_pre", restore),
+    ("load_pre", frames.forget_all),
+    ("undo_post", restore),
+    ("redo_post", restore),
+)
+_register_operators, _unregister_operators = bpy.utils.register_classes_factory(
     (AFTERLIGHT_OT_update, AFTERLIGHT_OT_free_passes)
 )
 
 
 def register():
-    _register_classes()
+    bpy.utils.register_class(AfterlightReplay)
+    _register_operators()
     events.listen(HANDLERS)
 
 
 def unregister():
+    """The engine goes when the render ends, if one is under way: Blender frees the engines of all renders when any
+    engine's class goes."""
     events.ignore(HANDLERS)
     finish()
-    forget_all()
-    _unregister_classes()
+    frames.forget_all()
+    _unregister_operators()
+    main_thread.after_render(lambda: bpy.utils.unregister_class(AfterlightReplay))

@@ -7,71 +7,67 @@ import time
 import bpy
 import numpy as np
 
-from .. import gather
 from ..compositor import view_scenes
 from ..diagnosis import checks
-from ..host import main_thread, report, roles
-from ..host.report import Problem
-from ..scene import passes, view_cameras
+from ..host import engines, main_thread, report, roles
+from ..scene import cameras, passes, view_cameras
 from ..translations import say
 from ..views import main_view, placement, ray_cast
-from . import relight
+from . import job as jobs
 
 
 class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
-    bl_idname = view_scenes.SCOUT_ENGINE
+    bl_idname = engines.VIEWS
     bl_label = "Afterlight's views (used by its helper scenes)"
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
 
     def render(self, depsgraph):
         """Pose the views, or leave them out. There is no picture."""
         scene = roles.source(depsgraph.scene)
-        if scene is None or not view_scenes.is_rendered(scene) or not scene.afterlight.enabled:
+        if scene is None or not scene.afterlight.enabled:
             return
-        start = time.perf_counter()
-        try:
-            with main_thread.until(self.test_break):
-                main_thread.run(lambda: view_scenes.prepare(scene))
-                if relight.is_replayed(scene):
-                    return  # the views that were kept with the frame are used again
-                if any(finding.fatal for finding in checks.findings(scene)):
-                    return  # the engine of the light says so
-                self._place(scene, depsgraph)
-        except gather.Cancelled:
-            pass
-        except Problem as problem:
-            self._warn(scene, say(*problem.args))
-        except Exception as error:  # a bug of ours must not cost the light of the main view
-            report.tell_traceback()
-            self._warn(
-                scene,
-                say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
-            )
-        report.scouted(scene, time.perf_counter() - start)
+        job, start = jobs.current(scene), time.perf_counter()
+        if not job.renders(scene):
+            return
+        with self.failures_of(scene, self._warn), main_thread.until(self.test_break):  # the main view is lit without
+            job.reuse.begin_frame()
+            main_thread.run(lambda: view_scenes.prepare(scene))
+            # The views of a kept frame are used again; what keeps all light out, the engine of the light says.
+            if not job.replayed and not any(finding.fatal for finding in checks.findings(scene)):
+                self._place(job, scene, depsgraph)
+        job.views_placed(scene, time.perf_counter() - start)
 
-    def _place(self, scene, depsgraph):
+    def _place(self, job, scene, depsgraph):
         start = time.perf_counter()
-        camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+        camera = cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
         by_hand = scene.afterlight.views == "MANUAL"
         if by_hand:
             main_thread.run(lambda: self._pose_by_hand(scene, depsgraph))
         geometry = ray_cast.Geometry(depsgraph)
-        seen_by_eevee, rng = main_view.finished(scene, camera), np.random.default_rng(scene.afterlight.seed)
+        layer = cameras.first_layer(scene)
+        frame = passes.load(job.passes_file(scene), layer.name, cameras.window(scene)[0])
+        picture, rng = main_view.Picture(scene, layer, frame, camera), np.random.default_rng(scene.afterlight.seed)
 
-        def look(paths):
-            return seen_by_eevee.paths(paths, geometry, rng, scene.afterlight.bounces)
+        def look(count):
+            return picture.paths(count, geometry, rng, scene.afterlight.bounces)
 
-        light, seen = look(placement.PATHS)
-        if light is None:
+        paths, seen = look(placement.PATHS)
+        if paths is None:
             if not by_hand:
                 self._warn(scene, say("No views were placed, because no surface adds light to what the camera sees"))
             return
         if by_hand:
-            shares = self._score(scene, depsgraph, light, seen, geometry.cast)
+            shares = self._score(scene, depsgraph, paths, seen, geometry.cast)
         else:
-            shares = self._choose(scene, depsgraph, light, seen, geometry.cast, look, rng)
-        main_thread.run(lambda: view_scenes.leave_out_still(scene, depsgraph))
+            shares = self._choose(scene, depsgraph, paths, seen, geometry.cast, look, rng)
+        main_thread.run(lambda: self._leave_out_still(job, scene, depsgraph))
         report.covered(scene, shares, time.perf_counter() - start)
+
+    def _leave_out_still(self, job, scene, depsgraph):
+        """Of the posed views, drop those that would see what they saw in the frame before."""
+        for view in view_scenes.posed(scene):
+            if job.reuse.recall(scene, depsgraph, view, view_cameras.shown(view, scene)):
+                view_scenes.drop(view)
 
     def _pose_by_hand(self, scene, depsgraph):
         for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
@@ -83,50 +79,50 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
                     view, scene, evaluated.matrix_world, view_cameras.lens_of(evaluated, depsgraph, scene)
                 )
 
-    def _score(self, scene, depsgraph, light, seen, cast):
-        """What the user's own views see: the shares of light as status.covered() wants them. Useless views are left
+    def _score(self, scene, depsgraph, paths, seen, cast):
+        """What the user's own views see: the shares of light as report.covered() wants them. Useless views are left
         out."""
-        shares = [light.arrives(seen)]
+        shares = [paths.arrives(seen)]
         for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
             if not view.view_layers[0].use:
                 continue
             camera = view_cameras.camera(view, depsgraph, scene)
-            frame = passes.window(scene)[0][2:]
-            row, _, depth = passes.project(light.places, frame, camera)
+            frame = cameras.window(scene)[0][2:]
+            row, _, depth = cameras.project(paths.places, frame, camera)
             eye = camera.position
             if camera.orthographic:
-                eye = light.places + np.outer(depth, camera.rotation[2])
-            saw = placement.visible(eye, light, cast) & (row >= 0)
+                eye = paths.places + np.outer(depth, camera.rotation[2])
+            saw = placement.visible(eye, paths, cast) & (row >= 0)
             if not saw.any():
                 self._warn(
                     scene,
                     say(
-                        'The view "{}" sees no surface that lights the image and was left out. It may be inside a '
-                        "wall or face away. Move it, or remove it from the list",
+                        'The view "{}" sees no surface that lights the image and was left out. It may be inside a wall '
+                        "or face away. Move it, or remove it from the list",
                         each.camera.name,
                     ),
                 )
                 main_thread.run(lambda view=view: view_scenes.drop(view))
                 continue
             seen = seen | saw
-            shares.append(light.arrives(seen))
+            shares.append(paths.arrives(seen))
         return shares
 
-    def _choose(self, scene, depsgraph, light, seen, cast, look, rng):
+    def _choose(self, scene, depsgraph, paths, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
         half, most, known = view_cameras.HALF_FIELD, scene.afterlight.view_count, view_scenes.placed(scene)
         old = known.poses if known else []
-        shares = placement.covered(light, seen, cast, half, old)
+        shares = placement.covered(paths, seen, cast, half, old)
         sees_nothing_new = old and shares[-1] <= shares[0]
         if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL or sees_nothing_new:
             more, more_seen = look(placement.CHOOSING_PATHS)
             poses = placement.place(more, more_seen, cast, half, most, rng, old) if more else []
-            shares = placement.covered(light, seen, cast, half, poses)
-            known = placement.Placement(poses, shares, placement.CLEARANCE * light.size)
+            shares = placement.covered(paths, seen, cast, half, poses)
+            known = placement.Placement(poses, shares, placement.CLEARANCE * paths.size)
             main_thread.run(lambda: view_scenes.keep_placed(scene, known))
             if not poses and shares[0] < 1 - placement.FALL:
                 self._warn(scene, say("No views were placed, because no free position shows more than the camera does"))
-        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * light.size)
+        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * paths.size)
         lens = view_cameras.wide_lens(scene, known.clearance / 4, far)
         main_thread.run(
             lambda: [

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Views that need not be rendered in every frame of an animation, because what they see can't have changed.
+"""Whether anything but the camera moves in an animation.
 
-Blender does not say what a frame has changed: each engine evaluates the scene anew. So it is asked what *could* change
-with time or with the main camera, and whatever is not known to keep still counts as moving. Only the main camera may
-move, and what nothing but cameras depends on: a camera's way through a building, a turntable that turns the camera.
-Views are kept within one render job, since between two anything may be edited, and not in a window, where it may be in
-the midst of one: what the dependency graph reports there does not tell an edit from what a render itself sets off.
+Blender does not say what a frame has changed: each engine evaluates the scene anew. So the file is asked what *could*
+change with time or with the main camera, and whatever is not known to hold still counts as moving. Only the main camera
+may move, and what nothing but cameras depends on: a camera's path through a building, a turntable that turns the
+camera.
 """
-
-import os
 
 import bpy
 
@@ -97,65 +94,11 @@ HANDLERS = (
     "depsgraph_update_post",
 )
 
-_moving = {}  # what moving() found, by the session_uid of the lit scene
-_known = {}  # (what shown() gave, views.Saved) by the session_uid of the view
-_again = {}  # of those, the views.Saved that the frame at hand uses again
 
+def moving(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
+    """The name of something that may look otherwise in another frame of `scene`; empty where there is nothing.
 
-def begin():
-    """A render begins or is over: nothing is known to keep still."""
-    for each in (_moving, _known, _again):
-        each.clear()
-
-
-def recall(scene, depsgraph, view, shown):
-    """Whether `view` of `scene` need not be rendered in this frame. shown: all that decides what it sees of a still
-    scene. depsgraph: one in which all that the view sees is evaluated."""
-    if not bpy.app.background:
-        return False
-    before, saved = _known.get(view.session_uid, (None, None))
-    if before != shown or not os.path.exists(saved.path) or moving(scene, depsgraph):
-        return False
-    _again[view.session_uid] = saved
-    return True
-
-
-def begin_frame():
-    """No view is used again as yet."""
-    _again.clear()
-
-
-def recalled(view):
-    """views.Saved of a view that this frame uses again, or None."""
-    return _again.get(view.session_uid)
-
-
-def remember(view, shown, saved):
-    """The view was rendered."""
-    _known[view.session_uid] = shown, saved
-
-
-def files():
-    """The files that views may be read from once more."""
-    return [saved.path for _, saved in _known.values()]
-
-
-def forget_others(found):
-    """Forget the views that are not in `found`, [views.Saved] of the frame at hand. Returns their files, which nobody
-    needs."""
-    others = [uid for uid, (_, saved) in _known.items() if saved not in found]
-    return [_known.pop(uid)[1].path for uid in others]
-
-
-def moving(scene, depsgraph):
-    """The name of something that may look otherwise in another frame of `scene`; empty where there is nothing. Asked
-    once in a render: whatever changes within it is of a kind that this finds."""
-    if scene.session_uid not in _moving:
-        _moving[scene.session_uid] = _find_moving(scene, depsgraph)
-    return _moving[scene.session_uid]
-
-
-def _find_moving(scene, depsgraph):
+    depsgraph: one in which all that is looked at is evaluated."""
     for name in HANDLERS:
         for handler in getattr(bpy.app.handlers, name):
             if not getattr(handler, "__module__", "").startswith(__package__.rpartition(".")[0]):

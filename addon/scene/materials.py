@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass, field
 
+import bpy
 import numpy as np
 
 from ..gather import images
@@ -31,7 +32,7 @@ class Look:
     passes_light: bool = False
 
 
-def look(material):
+def look(material: bpy.types.Material | None) -> Look:
     """Look of a material, or of None as Blender shows it."""
     if material is None:
         return Look()
@@ -45,7 +46,7 @@ def look(material):
     return Look(albedo, emission, alpha < 0.5)
 
 
-def sky(world):
+def sky(world: bpy.types.World | None) -> float:
     """Mean radiance of a world, roughly."""
     node = _shines(world) if world else None
     if node is None:
@@ -54,7 +55,7 @@ def sky(world):
     return value("Color", UNKNOWN) * value("Strength", 1.0)
 
 
-def roughness(material, otherwise):
+def roughness(material: bpy.types.Material, otherwise: float) -> float:
     """Roughness of a material's gloss, 0 to 1; of several, the mean by how much each has in a mixture. Textures count
     as the mean of their picture. otherwise: where it can't be told, or nothing is glossy."""
     output = material.node_tree.get_output_node("EEVEE") if material.node_tree else None
@@ -73,7 +74,7 @@ class Sky:
     to_world: np.ndarray = field(default_factory=lambda: np.eye(3))
 
 
-def sky_of(world):
+def sky_of(world: bpy.types.World) -> Sky | None:
     """Sky of a world; None where nodes decide it that are not read here."""
     if not world.node_tree:
         return Sky(np.array(world.color))

@@ -5,7 +5,7 @@ know nothing of: volumes, materials whose Render Method is Blended, and Grease P
 import bpy
 
 
-def present(scene):
+def present(scene: bpy.types.Scene) -> bool:
     """Whether volumes, Blended materials or Grease Pencil can be in the picture of `scene`. What is hidden counts as
     well: it may be keyframed.
 

@@ -10,13 +10,15 @@ how they were checked).
 
 import math
 
+import bpy
+
 NO_FILTER = 0.01  # pixels: a smaller filter is none
 DISK_FILTER = math.sqrt(0.5)  # below this radius EEVEE's samples fill a disk, above it the pixel
 DISK = 0.5  # its radius, as a share of the filter's
 SPARSE_FILTER = 2.2  # above this radius EEVEE draws the pixels around at random, and which is kept isn't known
 
 
-def middle(scene, layer):
+def middle(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> tuple[float, float]:
     """(x, y), pixels to the right and up: where the depth of a pixel was sampled, from the pixel's middle. layer: the
     view layer that is rendered."""
     count, radius = layer.samples or scene.eevee.taa_render_samples, scene.render.filter_size
@@ -43,7 +45,7 @@ def _jitter(number, radius):
     return length * math.cos(angle), length * math.sin(angle)
 
 
-def radical_inverse(number, base):
+def radical_inverse(number: int, base: int) -> float:
     """The digits of a number mirrored at the point (Halton 1960), in [0, 1)."""
     found, share = 0.0, 1.0
     while number:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import gather
 from ..host import main_thread
-from . import materials, passes
+from . import exr, materials, passes
 
 AOV = "Roughness"
 UNKNOWN = 0.5  # where nodes decide it that are not read, and of surfaces without a material: Blender's own default
@@ -21,22 +21,22 @@ COLOR, DIRECT = ("use_pass_glossy_color", "Glossy Color"), ("use_pass_glossy_dir
 MATERIAL = "use_pass_cryptomatte_material", "CryptoMaterial00"
 
 
-def needed(layer):
+def needed(layer: bpy.types.ViewLayer) -> tuple[tuple[str, str], ...]:
     """(switch, pass) of what load() reads of a view layer."""
     return (COLOR, DIRECT) if has_aov(layer) else (COLOR, DIRECT, MATERIAL)
 
 
-def has_aov(layer):
+def has_aov(layer: bpy.types.ViewLayer) -> bool:
     """Whether the view layer's materials write their roughness themselves."""
     return any(aov.name == AOV and aov.type == "VALUE" and aov.is_valid for aov in layer.aovs)
 
 
-def load(path, layer, window):
-    """gather.Gloss of a view layer from a file that passes.save() wrote, and None where it lacks a pass. path, layer,
-    window, Problem: as passes.load() has them."""
-    cut = passes.read(path, window)
+def load(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Gloss | None:
+    """gather.Gloss of a view layer from a file that frame_store.save() wrote, and None where it lacks a pass. path,
+    layer, window, Problem: as passes.load() has them."""
+    cut = exr.read(path, window)
     try:
-        color = tuple(cut(f"{layer}.{COLOR[1]}.{axis}") for axis in "RGB")
+        color = exr.triple(cut, f"{layer}.{COLOR[1]}")
         try:
             rough = cut(f"{layer}.{AOV}.X")
         except KeyError:
@@ -46,17 +46,17 @@ def load(path, layer, window):
     return gather.Gloss(color, rough)
 
 
-def shine(path, layer, window):
+def shine(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Passes | None:
     """gather.Passes of a view layer as gather.View.shine wants them, and None where the file lacks a pass."""
-    cut, found = passes.read(path, window), passes.load(path, layer, window)
+    cut, found = exr.read(path, window), passes.load(path, layer, window)
     try:
-        color, direct = (tuple(cut(f"{layer}.{name}.{axis}") for axis in "RGB") for _, name in (COLOR, DIRECT))
+        color, direct = (exr.triple(cut, f"{layer}.{name}") for _, name in (COLOR, DIRECT))
     except KeyError:
         return None
     return replace(found, diffuse_color=color, diffuse_direct=direct, emission=(np.zeros_like(found.depth),) * 3)
 
 
-def of_materials(numbers):
+def of_materials(numbers: np.ndarray) -> np.ndarray:
     """(H, W) float32 of the numbers by which Cryptomatte calls materials."""
     found, at = np.unique(np.ascontiguousarray(numbers).view(np.uint32), return_inverse=True)
     wanted = set(found.tolist())
@@ -70,7 +70,7 @@ def of_materials(numbers):
     return np.array([known.get(number, UNKNOWN) for number in found.tolist()], np.float32)[at].reshape(numbers.shape)
 
 
-def cryptomatte(name):
+def cryptomatte(name: str) -> int:
     """The bits of the number by which Cryptomatte calls a thing of this name: MurmurHash3 (A. Appleby; 32 bits, seed
     0), made a float that is finite and not denormal (Cryptomatte specification 1.2.0, ID generation)."""
 

@@ -12,9 +12,10 @@ wherever a surface is brighter than the rounding of these passes. Where it is no
 there is taken from what is seen nearby at a like distance, and then from further off.
 """
 
+import bpy
 import numpy as np
 
-from . import media, passes, roughness
+from . import exr, media, roughness
 
 VOLUME = "eevee.use_pass_volume_direct", "Volume Direct"
 TRANSPARENT = "eevee.use_pass_transparent", "Transparent"
@@ -32,16 +33,17 @@ WIDER = 4  # times a cell's side where Combined is blurred
 FINEST = 4  # pixels along a cell's side, at least
 
 
-def needed(scene):
+def needed(scene: bpy.types.Scene) -> tuple[tuple[str, str], ...]:
     """(switch, pass) of what load() reads of a view layer, beside passes.needed(): nothing where nothing can be in
     front."""
     return PASSES if media.present(scene) else ()
 
 
-def load(path, layer, window, cell, blurred):
+def load(path: str, layer: str, window: tuple[int, int, int, int], cell: int, blurred: bool) -> np.ndarray | None:
     """(H, W, 3) float32 in 0..1, rows bottom first as the light is handed back: through() of a view layer from a file
-    that passes.save() wrote; None where it lacks a pass. path, layer, window, Problem: as passes.load() has them."""
-    cut = passes.read(path, window)
+    that frame_store.save() wrote; None where it lacks a pass. path, layer, window, Problem: as passes.load() has
+    them."""
+    cut = exr.read(path, window)
 
     def color(name):
         return _finite(np.stack([cut(f"{layer}.{name}.{axis}") for axis in "RGB"], -1))
@@ -65,7 +67,16 @@ def load(path, layer, window, cell, blurred):
     return through(*rest, blended, opacity, cut(f"{layer}.Depth.Z"), cell, blurred)[::-1]
 
 
-def through(combined, surface, volume, blended, opacity, depth, cell, blurred=False):
+def through(
+    combined: np.ndarray,
+    surface: np.ndarray,
+    volume: np.ndarray,
+    blended: np.ndarray,
+    opacity: np.ndarray,
+    depth: np.ndarray,
+    cell: int,
+    blurred: bool = False,
+) -> np.ndarray:
     """(H, W, 3), 0..1: the share of the surfaces' light that reaches the camera.
 
     combined, surface, volume, blended: (H, W, 3), W sr^-1 m^-2, C, S, V and B above; opacity, depth: (H, W), A, and

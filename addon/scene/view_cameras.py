@@ -5,11 +5,13 @@ view_scenes.py."""
 from dataclasses import dataclass
 from math import radians
 
+import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..compositor import nodes
-from . import passes, pixel_jitter
+from .. import gather
+from ..host.assign import assign
+from . import cameras, pixel_jitter
 
 FIELD = radians(120)  # of an automatic view, across and up: its pixels are no squares, whatever the frame's sides
 HALF_FIELD = np.tan(FIELD / 2) * np.ones(2)  # tangents of half of it
@@ -27,29 +29,30 @@ class Lens:
     orthographic: bool = False
 
 
-def lens_of(source, depsgraph, scene):
+def lens_of(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> Lens:
     """Lens of an evaluated camera of the user's, as if the view were its whole frame, and that as high as it is wide:
     the side that is shorter sees as far as the other."""
-    size = np.array(passes.window(scene)[0][2:])
-    seen = passes.camera_at(source.matrix_world, source, depsgraph, (0, 0), size, (1.0, 1.0))
+    *_, width, height = cameras.window(scene)[0]
+    size = np.array((width, height))
+    seen = cameras.camera_at(source.matrix_world, source, depsgraph, (0, 0), (width, height), (1.0, 1.0))
     pixel = (seen.scale * size).max() / size
     axis = -(seen.offset + seen.scale * size / 2) / pixel
     return Lens(tuple(pixel), source.data.clip_start, source.data.clip_end, tuple(axis), seen.orthographic)
 
 
-def wide_lens(scene, near, far):
+def wide_lens(scene: bpy.types.Scene, near: float, far: float) -> Lens:
     """Lens of an automatic view."""
-    return Lens(tuple(2 * HALF_FIELD / np.array(passes.window(scene)[0][2:])), near, far)
+    return Lens(tuple(2 * HALF_FIELD / np.array(cameras.window(scene)[0][2:])), near, far)
 
 
-def pose(view, scene, matrix, lens):
+def pose(view: bpy.types.Scene, scene: bpy.types.Scene, matrix, lens: Lens) -> None:
     """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
 
     Blender renders it at the scene's resolution and, where that has one, within its render border. The camera is made
     so that this border holds the whole view."""
     camera, data = view.camera, view.camera.data
     place, rotation, _ = Matrix(matrix).decompose()
-    (x, y, width, height), full = passes.window(scene)
+    (x, y, width, height), full = cameras.window(scene)
     across, up = lens.pixel
     # Blender measures a frame in the width of its pixels, and fits its longer side to the sensor.
     stretch = up / across
@@ -66,22 +69,22 @@ def pose(view, scene, matrix, lens):
         "clip_end": lens.far,
     }
     for name, value in values.items():
-        nodes.assign(data, name, value)
+        assign(data, name, value)
     for name, value in (("rotation_mode", "QUATERNION"), ("location", place), ("rotation_quaternion", rotation)):
-        nodes.assign(camera, name, value)
+        assign(camera, name, value)
     for name, value in (
         ("pixel_aspect_x", max(1 / stretch, 1.0)),
         ("pixel_aspect_y", max(stretch, 1.0)),
         ("use_border", scene.render.use_border),
         ("use_crop_to_border", scene.render.use_crop_to_border),
     ):
-        nodes.assign(view.render, name, value)
-    nodes.assign(view.view_layers[0], "use", True)
+        assign(view.render, name, value)
+    assign(view.view_layers[0], "use", True)
 
 
-def window_matrix(lens, scene):
+def window_matrix(lens: Lens, scene: bpy.types.Scene) -> np.ndarray:
     """(4, 4) float64: the projection of a lens of `scene`."""
-    size, pixel = np.array(passes.window(scene)[0][2:], float), np.array(lens.pixel)
+    size, pixel = np.array(cameras.window(scene)[0][2:], float), np.array(lens.pixel)
     low, high = ((side * size / 2 - lens.centre) * pixel for side in (-1, 1))
     near, far = lens.near, lens.far
     found = np.zeros((4, 4))
@@ -95,11 +98,11 @@ def window_matrix(lens, scene):
     return found
 
 
-def shown(view, scene):
+def shown(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
     """All that decides what a view sees of a still scene."""
     camera, data = view.camera, view.camera.data
     return (
-        passes.window(scene),
+        cameras.window(scene),
         _aspect(view),
         camera.location[:],
         camera.rotation_quaternion[:],
@@ -111,12 +114,12 @@ def shown(view, scene):
     )
 
 
-def camera(view, depsgraph, scene):
+def camera(view: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> gather.Camera:
     """gather.Camera of a view that is rendered together with `scene`. Its pose is what pose() set: nothing animates
     it, so that no depsgraph need have heard of it."""
     place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
-    (x, y, _, _), full = passes.window(scene)
-    return passes.camera_at(
+    (x, y, _, _), full = cameras.window(scene)
+    return cameras.camera_at(
         place, view.camera, depsgraph, (x, y), full, _aspect(view), pixel_jitter.middle(view, view.view_layers[0])
     )
 

@@ -3,27 +3,20 @@
 before them. EEVEE keeps no more of a world than its mean and the way it leans (the first order of spherical
 harmonics)."""
 
+import bpy
 import numpy as np
 
-from ..compositor import nodes
 from ..gather import images
 from . import materials
 
 ROWS = 512  # that a picture of the surroundings is read as, and twice as many columns
 
-_known = {}  # what harmonics() found, by what it depends on
 
-
-def mirror(scene, helper):
-    """Let `helper`'s depsgraph hold what shines on `scene`, so that it can be looked at as it is in a frame."""
-    nodes.assign(helper, "world", scene.world)
-    for layer, own in zip(scene.view_layers, helper.view_layers):
-        nodes.assign(own, "world_override", layer.world_override)
-
-
-def light(depsgraph):
+def light(depsgraph: bpy.types.Depsgraph, known: dict) -> np.ndarray | None:
     """(4, 3), as gather.gather_views() wants it, of the world of a depsgraph's view layer: one of a single colour, or
-    of a picture all around. None where there is no light, or where other nodes decide it."""
+    of a picture all around. None where there is no light, or where other nodes decide it.
+
+    known: {}, filled with what pictures give: kept by the caller for as long as no picture changes."""
     world = depsgraph.view_layer.world_override or depsgraph.scene.world
     if world is None:
         return None
@@ -35,32 +28,27 @@ def light(depsgraph):
     if sky.image is None:
         found[0] = sky.color
     else:
-        found = _of_image(sky, world.sun_threshold)
+        found = _of_image(sky, world.sun_threshold, known)
         if found is None:
             return None
     return found if found.any() else None
 
 
-def forget():
-    """A render begins or is over: pictures may change until the next."""
-    _known.clear()
-
-
-def _of_image(sky, sun_threshold):
+def _of_image(sky, sun_threshold, known):
     """harmonics() of a sky's picture, turned as it is; None where its colours can't be told."""
     image = sky.image
     key = image.session_uid, *image.size, image.filepath, image.colorspace_settings.name, *sky.color, sun_threshold
-    if key not in _known:
+    if key not in known:
         # EEVEE makes a sun of what is brighter than its threshold, which then casts shadows and is none of ours.
         found = images.means(image, 2 * ROWS, ROWS, sky.color, sun_threshold)
-        _known[key] = None if found is None else harmonics(found[..., :3])
-    if _known[key] is None:
+        known[key] = None if found is None else harmonics(found[..., :3])
+    if known[key] is None:
         return None
-    mean, lean = _known[key][:1], _known[key][1:]
+    mean, lean = known[key][:1], known[key][1:]
     return np.concatenate([mean, sky.to_world @ lean])
 
 
-def harmonics(radiance):
+def harmonics(radiance: np.ndarray) -> np.ndarray:
     """(4, 3) float64: by how much surroundings light a white surface with normal n, found[0] + n @ found[1:], as
     radiance.
 

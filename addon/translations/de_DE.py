@@ -540,6 +540,9 @@ TEXTS = {
     # What can go wrong in a render
     "Afterlight (used by its helper scenes)": "Afterlight (für seine Hilfsszenen)",
     "Afterlight's views (used by its helper scenes)": "Ansichten von Afterlight (für seine Hilfsszenen)",
+    "Afterlight's last render (used to update its light)": (
+        "Letztes Rendering von Afterlight (zum Aktualisieren des Lichts)"
+    ),
     "Afterlight: the image has no indirect light": "Afterlight: Das Bild hat kein indirektes Licht",
     "Afterlight: the viewport has no indirect light": "Afterlight: Das Ansichtsfenster hat kein indirektes Licht",
     "This render engine is only for Afterlight's helper scenes. Set Render Engine to EEVEE and enable Indirect Light": (

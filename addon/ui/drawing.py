@@ -4,7 +4,7 @@
 import blf
 
 from .. import parameters
-from ..host import roles
+from ..host import engines, roles
 
 
 class InRenderProperties:
@@ -18,7 +18,7 @@ class InRenderProperties:
     def poll(cls, context):
         # With another engine an enabled panel stays, to say that it has no effect.
         scene = context.scene
-        return scene.render.engine == "BLENDER_EEVEE" or scene.afterlight.enabled or roles.is_helper(scene)
+        return scene.render.engine == engines.EEVEE or scene.afterlight.enabled or roles.is_helper(scene)
 
 
 def draw_settings(layout, settings, panel):

@@ -9,7 +9,7 @@ from mathutils import Matrix
 from .. import parameters
 from ..compositor import setup, view_scenes
 from ..host import report
-from ..scene import view_cameras
+from ..scene import needs, view_cameras
 from ..translations import say
 from .drawing import InRenderProperties, draw_settings, draw_text, draw_value
 from .operators import OnEditableScene
@@ -101,8 +101,8 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if len(context.scene.afterlight.view_cameras) >= view_scenes.MOST:
-            cls.poll_message_set(say("There can be {} views at most", view_scenes.MOST))
+        if len(context.scene.afterlight.view_cameras) >= needs.MOST_VIEWS:
+            cls.poll_message_set(say("There can be {} views at most", needs.MOST_VIEWS))
             return False
         return True
 
@@ -110,7 +110,7 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
         scene, settings = context.scene, context.scene.afterlight
         listed = {each.camera for each in settings.view_cameras} | {scene.camera}
         chosen = [thing for thing in context.selected_objects if thing.type == "CAMERA" and thing not in listed]
-        for camera in (chosen or [None])[: view_scenes.MOST - len(settings.view_cameras)]:
+        for camera in (chosen or [None])[: needs.MOST_VIEWS - len(settings.view_cameras)]:
             settings.view_cameras.add().camera = camera
         settings.view_camera = len(settings.view_cameras) - 1
         setup.connect_if_enabled(scene)

@@ -10,7 +10,7 @@ import numpy as np
 from .. import gather
 from ..gather import device, interactive
 from ..host import put_back
-from ..scene import passes
+from ..scene import cameras
 
 # What is drawn: the passes as gather/interactive.py names them, and as the viewport's shading does. Only the last but
 # one changes with lamps.
@@ -100,7 +100,7 @@ def camera_of(view_matrix, window_matrix, size):
     """gather.Camera of matrices as Blender's viewports have them, for a picture of `size` (width, height) pixels."""
     view, window = np.array(view_matrix, float), np.array(window_matrix, float)
     rotation = view[:3, :3] / np.linalg.norm(view[:3, :3], axis=1)[:, None]
-    return passes.camera_through(
+    return cameras.camera_through(
         window, rotation, -rotation.T @ view[:3, 3], (0, 0), size, orthographic=bool(window[3, 3])
     )
 

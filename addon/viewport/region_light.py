@@ -92,6 +92,7 @@ class Region:
         self._drawn, self._camera = None, None  # of the last draft
         self._history, self._mean = gather.History(), interactive.Mean()
         self._gathers, self._wanted = 0, REBUILT
+        self._worlds = {}  # world_light.light()'s, until something changes
 
     def work(self, stage):
         """Bring the light up to date, or nearer to its end, within what one redraw may take. Returns in how many
@@ -137,6 +138,8 @@ class Region:
         before = self._seen, self._stamps, self._options
         self._seen, self._stamps, self._options = seen, stamps, options
         others = self.further.follow(stage)
+        if before[1] != stamps:
+            self._worlds.clear()
         if before[0] != seen or before[1].shapes != stamps.shapes:
             return offscreen.ALL
         if before[1].lamps != stamps.lamps:
@@ -186,7 +189,9 @@ class Region:
         """One gather to what is shown, or in its place."""
         views = [main, *self.further.views()]
         history = self._history if main.coarse and stage.scene.afterlight.use_history else None
-        found = interactive.indirect(views, stage.size, replace(chosen, strength=1.0), _world(stage), history)
+        found = interactive.indirect(
+            views, stage.size, replace(chosen, strength=1.0), _world(stage, self._worlds), history
+        )
         if fresh:
             self._mean.clear()
         self._mean.add(found, main.passes.size)
@@ -206,10 +211,10 @@ def _options(stage):
     return (*(getattr(chosen, each.name) for each in properties.PARAMETERS if each.name != "strength"),)
 
 
-def _world(stage):
+def _world(stage, known):
     """The world's light, as gather.gather_views() takes it, where it is the scene's own and its shadow is wanted."""
     if stage.space.shading.use_scene_world_render and stage.scene.afterlight.use_world_shadow:
-        return world_light.light(stage.depsgraph)
+        return world_light.light(stage.depsgraph, known)
     return None
 
 

@@ -12,7 +12,7 @@ from .. import gather
 from ..compositor import view_scenes
 from ..gather import interactive
 from ..host import report
-from ..scene import view_cameras
+from ..scene import needs, view_cameras
 from ..views import main_view, placement, ray_cast
 from . import offscreen, scene_changes
 
@@ -65,7 +65,7 @@ class Further:
         there was nothing to light it."""
         scene, settings = stage.scene, stage.scene.afterlight
         if (
-            not view_scenes.wanted(scene)
+            not needs.views(scene)
             or settings.views != "AUTOMATIC"
             or not view_scenes.scout(scene)
             or view_scenes.placed(scene)
@@ -109,14 +109,14 @@ class Further:
 def _matrices(stage):
     """[(view matrix, window matrix)], (4, 4) float64 each, of the views that the scene's settings ask for."""
     scene, settings = stage.scene, stage.scene.afterlight
-    if not view_scenes.wanted(scene):
+    if not needs.views(scene):
         return []
     if settings.views == "MANUAL":
         cameras = [
             each.camera.evaluated_get(stage.depsgraph)
             for each in settings.view_cameras
             if each.camera and not view_scenes.unusable(each.camera)
-        ][: view_scenes.MOST]
+        ][: needs.MOST_VIEWS]
         found = [
             (np.array(camera.matrix_world.normalized()), view_cameras.lens_of(camera, stage.depsgraph, scene))
             for camera in cameras

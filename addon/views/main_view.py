@@ -4,17 +4,8 @@
 import numpy as np
 
 from .. import gather
-from ..render import relight
-from ..scene import animation, materials, passes
+from ..scene import cameras, materials
 from . import placement, ray_cast
-
-
-def finished(scene, camera):
-    """The Picture that EEVEE has just finished of the first view layer that is rendered."""
-    layer = passes.first_layer(scene)
-    relight.forget(scene.session_uid, but=animation.files())  # its own file is written again
-    frame = passes.load(passes.save_early(scene), layer.name, passes.window(scene)[0])
-    return Picture(scene, layer, frame, camera)
 
 
 class Picture:
@@ -29,7 +20,7 @@ class Picture:
         frame = self._frame
         flat = placement.pixels((frame.depth > 0) & (frame.depth < gather.FARTHEST), count, rng)
         row, column = np.divmod(flat, frame.size[0])
-        places = passes.positions(frame, self._camera, flat)
+        places = cameras.positions(frame, self._camera, flat)
         normals = np.stack([axis[row, column] for axis in frame.normal], -1).astype(float)
         albedo = np.mean([axis[row, column] for axis in frame.diffuse_color], 0)
         # Off the surface by more than the depth's own precision.
@@ -38,7 +29,7 @@ class Picture:
 
     def sees(self, places, normals):
         """(bool (N,), rows, columns): which of these points of surfaces the picture shows, and where."""
-        row, column, depth = passes.project(places, self._frame.size, self._camera)
+        row, column, depth = cameras.project(places, self._frame.size, self._camera)
         shown = self._frame.depth[row, column]
         toward = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - places
         return (row >= 0) & (depth < 1.01 * shown) & (np.sum(toward * normals, -1) > 0), row, column

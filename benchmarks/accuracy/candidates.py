@@ -275,13 +275,13 @@ def look(scene, final, afterlight):
     import bpy
 
     passes = afterlight.addon.scene.passes
-    path = passes.save(scene)
+    path = afterlight.addon.scene.frame_store.save(scene)
     try:
-        found = passes.load(path, references.layer(scene).name, passes.window(scene)[0])
+        found = passes.load(path, references.layer(scene).name, afterlight.addon.scene.cameras.window(scene)[0])
     finally:
-        passes.discard(path)
+        afterlight.addon.scene.frame_store.discard(path)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    camera = passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+    camera = afterlight.addon.scene.cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
     direct = diffuse(scene)  # before world_light() renders again
     return Plain(final, direct, world_light(scene), found, camera)
 

@@ -267,8 +267,8 @@ def saved_passes(scene, *names):
     """{name: (H, W, 3) float32} of the finished render of any engine."""
     import OpenEXR
 
-    passes = session_passes()
-    path = passes.save(scene)
+    frame_store = session_package().scene.frame_store
+    path = frame_store.save(scene)
     try:
         channels = {
             name: channel.pixels
@@ -276,16 +276,16 @@ def saved_passes(scene, *names):
             for name, channel in part.channels.items()
         }
     finally:
-        passes.discard(path)
+        frame_store.discard(path)
     name_of = layer(scene).name
     return {name: np.stack([channels[f"{name_of}.{name}.{axis}"] for axis in "RGB"], -1) for name in names}
 
 
-def session_passes():
-    """The extension's module that gets passes out of Blender."""
+def session_package():
+    """The extension's own package."""
     import extension
 
-    return sys.modules[extension.MODULE].addon.scene.passes
+    return sys.modules[extension.MODULE].addon
 
 
 def shown(scene):

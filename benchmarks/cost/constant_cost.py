@@ -106,20 +106,20 @@ def rooms(afterlight, polygons, lights, size):
     """[Room], each rendered once by EEVEE after one frame that compiles its shaders."""
     import bpy
 
-    module, found = afterlight.addon.scene.passes, []
+    package, found = afterlight.addon.scene, []
     for index, (few_or_many, lamps) in enumerate(product(polygons, lights)):
         scene, count = build(few_or_many, lamps, size)
-        for _, switch, _, _ in module.PASSES:
+        for _, switch, _, _ in package.passes.PASSES:
             setattr(scene.view_layers[0], switch, True)
         for _ in range(2 if index == 0 else 1):
             start = time.perf_counter()
             bpy.ops.render.render()
             seconds = time.perf_counter() - start
-        path = module.save(scene)
-        passes = module.load(path, scene.view_layers[0].name, module.window(scene)[0])
-        module.discard(path)
+        path = package.frame_store.save(scene)
+        passes = package.passes.load(path, scene.view_layers[0].name, package.cameras.window(scene)[0])
+        package.frame_store.discard(path)
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        camera = module.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+        camera = package.cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
         found.append(Room(count, lamps, passes, camera, seconds))
         print(f"{count} polygons, {lamps} lights: EEVEE {seconds:.1f} s", file=sys.stderr, flush=True)
     return found

@@ -28,9 +28,9 @@ def ray_tracing(scene):
 
     def mean():
         bpy.ops.render.render()
-        path = passes.save(scene)
-        loaded = passes.load(path, layer.name, passes.window(scene)[0])
-        passes.discard(path)
+        path = afterlight.addon.scene.frame_store.save(scene)
+        loaded = passes.load(path, layer.name, afterlight.addon.scene.cameras.window(scene)[0])
+        afterlight.addon.scene.frame_store.discard(path)
         return float(np.mean(loaded.diffuse_direct))
 
     print(

@@ -43,7 +43,7 @@ def opened(name):
 
 def main_view(scene, depsgraph, geometry):
     """picture.Picture by rays through the camera."""
-    camera = addon.scene.passes.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+    camera = addon.scene.cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
     i, j = np.meshgrid(*(np.arange(count) + 0.5 for count in SIZE))
     ray = camera.offset + camera.scale * np.stack([i, j[::-1]], -1).reshape(-1, 2)  # rows top first
     flat, ahead = np.pad(ray, ((0, 0), (0, 1))), np.tile((0.0, 0, -1), (len(ray), 1))

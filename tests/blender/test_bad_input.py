@@ -271,8 +271,8 @@ def test_any_terminal_for_an_error_of_our_own(scene, afterlight, monkeypatch, tm
 
 def test_background_render_makes_what_python_saves_passes_through(scene, afterlight):
     """`blender -b -f 1` starts without the image that F12 makes."""
-    passes, handlers = afterlight.addon.scene.passes, afterlight.addon.render.handlers
-    while passes.render_result():
-        bpy.data.images.remove(passes.render_result())
+    handlers = afterlight.addon.render.handlers
+    while afterlight.addon.scene.frame_store.render_result():
+        bpy.data.images.remove(afterlight.addon.scene.frame_store.render_result())
     handlers.before_render(scene)
-    assert passes.render_result() and scene.afterlight.report == ""
+    assert afterlight.addon.scene.frame_store.render_result() and scene.afterlight.report == ""

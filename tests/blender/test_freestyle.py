@@ -112,7 +112,7 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
 
 def test_lines_over_the_light(scene, addon, tmp_path, monkeypatch):
     """Black lines stay black, and what half-transparent ones let through is lit as the plain picture is drawn over."""
-    handed, engine, passes = [], addon.render.engine.AfterlightEngine, addon.scene.passes
+    handed, engine = [], addon.render.engine.AfterlightEngine
     hand_back = engine._hand_back
 
     def spy(self, shot, pictures):
@@ -134,7 +134,7 @@ def test_lines_over_the_light(scene, addon, tmp_path, monkeypatch):
     color = np.array((0.2, 0.9, 0.1))
     style(scene, 3.0, color, 0.5)
     plain, lit, light = shown(False), shown(True), handed[-1]
-    cut = passes.read(addon.render.relight.kept(scene).path, passes.window(scene)[0])
+    cut = addon.scene.exr.read(addon.render.frames.kept(scene).path, addon.scene.cameras.window(scene)[0])
     clear = np.stack([cut(f"{scene.view_layers[0].name}.Combined.{axis}") for axis in "RGB"], -1)
     seen = (color[1] - plain[..., 1]) / (color[1] - clear[..., 1])  # what the lines let through of the plain picture
     assert ((seen > 0.2) & (seen < 0.8)).sum() > 50 and (seen > 0.999).sum() > 50

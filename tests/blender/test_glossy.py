@@ -113,14 +113,15 @@ def test_roughness_is_read_off_nodes(fresh, addon, kind):
 
 def roughness_seen(scene, addon, tmp_path):
     """(H, W) roughness of the frame as the engine reads it."""
-    passes = addon.scene.passes
     scene.afterlight.use_glossy = scene.afterlight.enabled = True
     render(scene, tmp_path / "picture.exr")
-    path = passes.save(scene)
+    path = addon.scene.frame_store.save(scene)
     try:
-        return addon.scene.roughness.load(path, scene.view_layers[0].name, passes.window(scene)[0]).roughness
+        return addon.scene.roughness.load(
+            path, scene.view_layers[0].name, addon.scene.cameras.window(scene)[0]
+        ).roughness
     finally:
-        passes.discard(path)
+        addon.scene.frame_store.discard(path)
 
 
 def test_pixels_have_the_roughness_of_their_material(scene, addon, tmp_path):

@@ -242,13 +242,13 @@ def test_each_shipped_preset_has_a_tooltip_of_its_own(scene, addon):
 def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, tmp_path, monkeypatch):
     """What the engine hands to the light, in a rendered animation."""
     seen = []
-    gather = addon.render.engine.light.gather_indirect
+    gather = addon.render.engine.gather.gather_indirect
 
     def spy(passes, camera, settings, **options):
         seen.append(settings)
         return gather(passes, camera, settings, **options)
 
-    monkeypatch.setattr(addon.render.engine.light, "gather_indirect", spy)
+    monkeypatch.setattr(addon.render.engine.gather, "gather_indirect", spy)
     near = pytest.approx
     settings = scene.afterlight
     settings.enabled = True
@@ -308,7 +308,7 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
     seen.clear()
     scene.animation_data_clear()
     monkeypatch.setattr(
-        addon.render.engine.light, "gather_views", lambda views, settings, world, **_: seen.append((settings, world))
+        addon.render.engine.gather, "gather_views", lambda views, settings, world, **_: seen.append((settings, world))
     )
     settings.method, settings.views = "RADIOSITY", "CAMERA"
     scene.world = bpy.data.worlds.new("Sky")

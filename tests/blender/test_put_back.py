@@ -74,7 +74,7 @@ def test_every_colour_space_of_every_format(rendered, afterlight, file_format, d
     seen = set()
     for space in spaces:
         image.linear_colorspace_settings.name = space
-        found = check(rendered, afterlight.addon.scene.passes.save)
+        found = check(rendered, afterlight.addon.scene.frame_store.save)
         seen.add(found["ColorManagedInputColorspaceSettings.name"])
     assert len(seen) > 20, "they differ"
 
@@ -86,11 +86,11 @@ def test_the_look_the_display_and_stereo(rendered, afterlight, file_format, dept
     image.view_settings.look, image.view_settings.use_curve_mapping = "AgX - Punchy", True
     image.display_settings.display_device = "Display P3"
     image.stereo_3d_format.display_mode, image.stereo_3d_format.use_squeezed_frame = "SIDEBYSIDE", True
-    found = check(rendered, afterlight.addon.scene.passes.save)
+    found = check(rendered, afterlight.addon.scene.frame_store.save)
     assert found["ColorManagedViewSettings.look"] == "AgX - Punchy"
     if image.has_linear_colorspace:
         image.color_management = "FOLLOW_SCENE"
-        check(rendered, afterlight.addon.scene.passes.save)
+        check(rendered, afterlight.addon.scene.frame_store.save)
 
 
 @pytest.mark.parametrize("file_format", ["PNG", "JPEG"])
@@ -105,7 +105,7 @@ def test_a_colour_space_without_a_use(rendered, afterlight, file_format):
         choose(rendered, file_format)
         linear.name = space
         if save:
-            afterlight.addon.scene.passes.save(rendered)
+            afterlight.addon.scene.frame_store.save(rendered)
         choose(rendered, "OPEN_EXR")
         return linear.name.replace("scene_linear", "Linear Rec.709")  # another name for it
 
@@ -139,14 +139,14 @@ def test_videos(rendered, afterlight, container, codec):
     video = rendered.render.ffmpeg
     video.format, video.codec = container, codec
     video.constant_rate_factor, video.gopsize, video.audio_codec = "LOW", 7, "NONE"
-    found = check(rendered, afterlight.addon.scene.passes.save)
+    found = check(rendered, afterlight.addon.scene.frame_store.save)
     assert (found["FFmpegSettings.format"], found["FFmpegSettings.codec"]) == (container, codec)
 
 
 @pytest.mark.parametrize("views_format", ["INDIVIDUAL", "STEREO_3D"])
 def test_the_format_of_views(rendered, afterlight, views_format):
     choose(rendered, "PNG", views_format=views_format)
-    check(rendered, afterlight.addon.scene.passes.save)
+    check(rendered, afterlight.addon.scene.frame_store.save)
 
 
 def test_a_whole_render(rendered, tmp_path):
@@ -163,7 +163,7 @@ def test_a_save_that_fails(rendered, afterlight, monkeypatch):
 
     def fails(scene):
         with pytest.raises(passes.Problem, match="could not be written"):
-            passes.save(scene)
+            afterlight.addon.scene.frame_store.save(scene)
 
-    monkeypatch.setattr(passes.os.path, "exists", lambda path: False)
+    monkeypatch.setattr(afterlight.addon.scene.frame_store.os.path, "exists", lambda path: False)
     check(rendered, fails)

@@ -116,10 +116,10 @@ def test_one_file_is_kept_and_freed(scene, relight, tmp_path):
     for _ in range(2):
         render(scene, tmp_path / "first.exr")
         assert len(files()) == 1
-    found = relight.kept(scene)
+    found = relight.frames.kept(scene)
     assert found.size == os.path.getsize(found.path) > 64 * 36 * 17 * 4
     bpy.ops.afterlight.free_passes()
-    assert not files() and relight.kept(scene) is None
+    assert not files() and relight.frames.kept(scene) is None
 
 
 def test_an_animation_keeps_its_last_frame(scene, relight, tmp_path):
@@ -131,7 +131,7 @@ def test_an_animation_keeps_its_last_frame(scene, relight, tmp_path):
     set_format(scene)
     scene.render.filepath = str(tmp_path / "frame#")
     bpy.ops.render.render(animation=True)
-    assert len(files()) == 1 and relight.kept(scene).frame == 2
+    assert len(files()) == 1 and relight.frames.kept(scene).number == 2
     scene.frame_set(1)
     assert np.array_equal(updated(scene, tmp_path / "again.exr"), read_rgb(tmp_path / "frame2.exr"))
 
@@ -148,7 +148,7 @@ def test_a_deleted_scene_frees_its_passes(scene, relight, tmp_path):
     bpy.context.window.scene = other
     bpy.data.scenes.remove(scene)
     other.view_layers[0].update()
-    relight.forget_deleted()
+    relight.frames.forget_deleted()
     assert not files()
 
 
@@ -177,7 +177,7 @@ def test_view_layers_with_names_like_passes(scene, relight, tmp_path, capfd, oth
         layer.use_pass_z = layer.use_pass_normal = True
         layer.aovs.add().name = "B"
     first = read(render(scene, tmp_path / "first.exr", "OPEN_EXR_MULTILAYER"))
-    found = relight.kept(scene).layers
+    found = relight.frames.kept(scene).layers
     assert found.keys() == {"A", *others}
     assert all(dict(passes).keys() >= {"Combined", "Depth", "Normal", "B"} for passes in found.values())
     capfd.readouterr()
@@ -204,7 +204,7 @@ def a_bug(relight, monkeypatch):
     def fails(*_):
         raise KeyError("no such pass")
 
-    monkeypatch.setattr(relight.passes, "read", fails)
+    monkeypatch.setattr(relight.exr, "read", fails)
 
 
 @pytest.mark.parametrize(
@@ -226,6 +226,6 @@ def test_passes_that_cannot_be_handed_back(scene, relight, tmp_path, monkeypatch
 
 
 def test_undo_into_the_moment_of_an_update_restores_the_engine(scene, relight):
-    scene.render.engine = "AFTERLIGHT"
+    scene.render.engine = "AFTERLIGHT_REPLAY"
     relight.restore()
     assert scene.render.engine == "BLENDER_EEVEE" and scene.afterlight.helper.render.engine == "AFTERLIGHT"

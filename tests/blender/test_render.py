@@ -52,7 +52,7 @@ def seen(afterlight, monkeypatch):
     import OpenEXR
 
     engine, found, positions = afterlight.addon.render.engine, [], []
-    load, gather = engine.passes.load, engine.light.gather_indirect
+    load, gather = engine.passes.load, engine.gather.gather_indirect
 
     def spy_load(path, layer, window, step=1):
         loaded = load(path, layer, window, step)
@@ -74,7 +74,7 @@ def seen(afterlight, monkeypatch):
         return gather(passes, camera, settings, **options)
 
     monkeypatch.setattr(engine.passes, "load", spy_load)
-    monkeypatch.setattr(engine.light, "gather_indirect", spy_gather)
+    monkeypatch.setattr(engine.gather, "gather_indirect", spy_gather)
     return found
 
 
@@ -343,7 +343,7 @@ def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monk
 
     def load(path):
         read_by_openexr.clear()
-        found = passes.load(str(path), scene.view_layers[0].name, passes.window(scene)[0])
+        found = passes.load(str(path), scene.view_layers[0].name, afterlight.addon.scene.cameras.window(scene)[0])
         return any(read_by_openexr), found.channels()
 
     def channels(kind=np.float32):
@@ -356,7 +356,7 @@ def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monk
 
     scene.afterlight.enabled = True
     render(scene, tmp_path / "picture.exr")
-    ours = Path(passes.save(scene))
+    ours = Path(afterlight.addon.scene.frame_store.save(scene))
     expected = read(ours)
     plain = {"compression": OpenEXR.NO_COMPRESSION}
     others = {
@@ -381,7 +381,7 @@ def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monk
         (tmp_path / "cut short").write_bytes(whole[:length])
         with pytest.raises(passes.Problem, match="could not be read back.*disk"):
             load(tmp_path / "cut short")
-    passes.discard(ours)
+    afterlight.addon.scene.frame_store.discard(ours)
 
 
 def test_no_file_is_left_in_the_temporary_folder(scene, tmp_path):

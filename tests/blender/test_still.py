@@ -18,8 +18,7 @@ def scene(fresh):
 
 @pytest.fixture
 def still(afterlight):
-    yield afterlight.addon.scene.animation
-    afterlight.addon.scene.animation.begin()
+    return afterlight.addon.scene.animation
 
 
 def keyed(thing, path="location", index=0):
@@ -130,13 +129,13 @@ def animation(scene, folder):
 @pytest.fixture
 def rendered(afterlight, monkeypatch):
     """The names of the scenes whose passes were written."""
-    names, save = [], afterlight.addon.scene.passes.save
+    names, save = [], afterlight.addon.scene.frame_store.save
 
     def spy(scene):
         names.append(scene.name)
         return save(scene)
 
-    monkeypatch.setattr(afterlight.addon.scene.passes, "save", spy)
+    monkeypatch.setattr(afterlight.addon.scene.frame_store, "save", spy)
     return names
 
 

@@ -173,7 +173,7 @@ def test_only_regular_files_are_read(afterlight, temp_files, elsewhere, make):
     path = temp_files.new(7)
     make(path)
     with pytest.raises(afterlight.addon.host.report.Problem, match="could not be read back"):
-        afterlight.addon.scene.passes.read(path, (0, 0, 4, 4))
+        afterlight.addon.scene.exr.read(path, (0, 0, 4, 4))
 
 
 # Blender's own folder

@@ -355,8 +355,8 @@ def pictures(fresh, addon, tmp_path, monkeypatch):
                     first = found.light
                     assert bpy.ops.afterlight.update() == {"FINISHED"}
                     found.again, found.light = found.light, first
-            path, layer = addon.render.relight.kept(scene).path, scene.view_layers[0].name
-            cut = addon.scene.passes.read(path, addon.scene.passes.window(scene)[0])
+            path, layer = addon.render.frames.kept(scene).path, scene.view_layers[0].name
+            cut = addon.scene.exr.read(path, addon.scene.cameras.window(scene)[0])
             color, direct, found.plain = (
                 np.stack([cut(f"{layer}.{kind}.{axis}") for axis in "RGB"], -1).astype(float)
                 for kind in ("Diffuse Color", "Diffuse Direct", "Combined")

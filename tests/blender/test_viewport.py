@@ -135,7 +135,7 @@ def test_a_viewport_is_lit_where_all_is_asked_for(scene, addon):
 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 def test_matrices_see_what_cameras_see(scene, addon, kind):
-    """camera_of() a camera's matrices is passes.camera(), and window_matrix() of a lens is the same again, where the
+    """camera_of() a camera's matrices is cameras.camera(), and window_matrix() of a lens is the same again, where the
     frame is a square."""
     eevee, lenses, passes = (
         import_module(f"{addon.__name__}.{name}")
@@ -148,7 +148,7 @@ def test_matrices_see_what_cameras_see(scene, addon, kind):
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     evaluated = camera.evaluated_get(depsgraph)
-    exact = passes.camera_at(evaluated.matrix_world, evaluated, depsgraph, (0, 0), (48, 48), (1.0, 1.0))
+    exact = addon.scene.cameras.camera_at(evaluated.matrix_world, evaluated, depsgraph, (0, 0), (48, 48), (1.0, 1.0))
     lens = lenses.lens_of(evaluated, depsgraph, scene)
     for window in (
         evaluated.calc_matrix_camera(depsgraph, x=48, y=48),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Further views: their scenes come and go with the settings, and what EEVEE saw through them is where it says it is."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -26,7 +28,7 @@ def wiring(afterlight):
 
 
 @pytest.fixture
-def seen(views, monkeypatch):
+def seen(afterlight, monkeypatch):
     """[(light.Passes, light.Camera, Position pass)] of the views, as the engine of the light gets them."""
 
     class Seen(list):
@@ -34,18 +36,19 @@ def seen(views, monkeypatch):
             super().clear()
             paths.clear()
 
-    found, load, paths = Seen(), views.Saved.load, set()
+    saved_view, exr = afterlight.addon.render.frames.SavedView, afterlight.addon.scene.exr
+    found, load, paths = Seen(), saved_view.load, set()
 
     def spy(saved):
         loaded = load(saved)
         if saved.path in paths:  # each is loaded twice in a frame
             return loaded
         paths.add(saved.path)
-        cut = views.passes.read(saved.path, saved.window)
+        cut = exr.read(saved.path, saved.window)
         found.append((loaded, saved.camera, np.stack([cut(f"{saved.layer}.Position.{axis}") for axis in "XYZ"], -1)))
         return loaded
 
-    monkeypatch.setattr(views.Saved, "load", spy)
+    monkeypatch.setattr(saved_view, "load", spy)
     return found
 
 
@@ -533,19 +536,19 @@ def test_views_that_can_not_be_used_are_named_and_left_out(scene, views, afterli
 
 
 def test_a_view_that_fails_leaves_the_others(scene, views, afterlight, seen, tmp_path, monkeypatch):
-    status, passes = afterlight.addon.host.report, afterlight.addon.scene.passes
+    status, frame_store = afterlight.addon.host.report, afterlight.addon.scene.frame_store
     scene.afterlight.enabled = True
     by_hand(scene, side_camera(), side_camera())
     for view in views.scenes(scene):
         view.view_layers[0].use_pass_position = True
-    save = passes.save
+    save = frame_store.save
 
     def fail(each):
         if each == views.scenes(scene)[0]:
             raise status.Problem("The disk is full")
         return save(each)
 
-    monkeypatch.setattr(passes, "save", fail)
+    monkeypatch.setattr(frame_store, "save", fail)
     render(scene, tmp_path / "lit.exr")
     assert scene.afterlight.report == "" and len(seen) == 1
     assert status.warnings(scene) == ["A view could not be used: The disk is full"]
@@ -592,16 +595,18 @@ def test_a_muted_view_is_not_used(scene, views, seen, tmp_path):
     assert scene.afterlight.report == "" and len(seen) == 1
 
 
-def test_the_picture_is_written_once_a_frame(scene, views, tmp_path, monkeypatch):
-    """The scout and the engine of the light read one file, of this very frame; nothing is left of it but what is
+def test_the_picture_is_written_once_a_frame(scene, afterlight, tmp_path, monkeypatch):
+    """The engines of the views and of the light read one file, of this very frame; nothing is left of it but what is
     kept."""
-    written, save = [], views.passes.save
-    monkeypatch.setattr(views.passes, "save", lambda lit: written.append(lit) or save(lit))
+    written, save = [], afterlight.addon.scene.frame_store.save
+    monkeypatch.setattr(afterlight.addon.scene.frame_store, "save", lambda lit: written.append(lit) or save(lit))
     scene.afterlight.views, scene.afterlight.view_count, scene.afterlight.enabled = "AUTOMATIC", 1, True
     for _ in range(2):
         written.clear()
         render(scene, tmp_path / "lit.exr")
         assert written.count(scene) == 1 and scene.afterlight.report == ""
-    views.passes.save_early(scene)
-    views.passes.discard_early()
-    assert views.passes.save_once(scene) and written.count(scene) == 3
+    job = afterlight.addon.render.job.begin(scene)
+    path = job.passes_file(scene)
+    assert job.passes_file(scene) == path and written.count(scene) == 2 and Path(path).exists()
+    afterlight.addon.render.job.end()
+    assert not Path(path).exists()

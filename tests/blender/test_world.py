@@ -60,13 +60,13 @@ def surround(scene, image, strength=1.5, turn=None):
     return texture
 
 
-def lit_by_eevee(scene, passes):
+def lit_by_eevee(scene, addon):
     """(6, 3): Diffuse Direct of a cube's sides, seen from one corner and from the opposite one."""
     bpy.ops.mesh.primitive_cube_add(size=1)
     scene.render.engine = "BLENDER_EEVEE"
     scene.eevee.taa_render_samples, scene.eevee.use_raytracing = 4, False
     scene.render.resolution_x = scene.render.resolution_y = 32
-    for _, switch, _, _ in passes.PASSES:
+    for _, switch, _, _ in addon.scene.passes.PASSES:
         setattr(scene.view_layers[0], switch, True)
     camera = scene.camera = scenes.put(bpy.data.cameras.new("Camera"))
     found = {}
@@ -74,7 +74,7 @@ def lit_by_eevee(scene, passes):
         camera.location = Vector((2, 2.2, 1.8)) * corner
         camera.rotation_euler = (-camera.location).to_track_quat("-Z", "Y").to_euler()
         bpy.ops.render.render()
-        shown, direct = read(scene, passes)
+        shown, direct = read(scene, addon)
         for normal in NORMALS:
             facing = shown @ np.array(normal) > 0.99
             if facing.sum() > 20:
@@ -82,17 +82,18 @@ def lit_by_eevee(scene, passes):
     return np.array([found[normal] for normal in NORMALS])
 
 
-def read(scene, passes):
+def read(scene, addon):
     """(normals, light of white surfaces) of the finished render, (H, W, 3) each."""
-    path = passes.save(scene)
-    found = passes.load(path, scene.view_layers[0].name, passes.window(scene)[0])
-    passes.discard(path)
+    path = addon.scene.frame_store.save(scene)
+    window, _ = addon.scene.cameras.window(scene)
+    found = addon.scene.passes.load(path, scene.view_layers[0].name, window)
+    addon.scene.frame_store.discard(path)
     return np.stack(found.normal, -1), np.stack(found.diffuse_direct, -1)
 
 
 def said(world):
     """(6, 3): the same by our own idea of the world."""
-    found = world.light(bpy.context.evaluated_depsgraph_get())
+    found = world.light(bpy.context.evaluated_depsgraph_get(), {})
     return found[0] + np.array(NORMALS) @ found[1:]
 
 
@@ -107,22 +108,21 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_light_is_eevees(scene, world, afterlight, kind):
-    passes = afterlight.addon.scene.passes
     KINDS[kind](scene)
     scene.world.sun_threshold = 5 if kind == "with a sun" else 0
     if kind == "with a sun":  # which is a lamp for EEVEE, and no part of its world's light
-        true = lit_by_eevee_without_sun(scene, passes)
+        true = lit_by_eevee_without_sun(scene, afterlight.addon)
     else:
-        true = lit_by_eevee(scene, passes)
+        true = lit_by_eevee(scene, afterlight.addon)
     # EEVEE keeps this light in floats of 6, 6 and 5 bits.
     assert (np.abs(said(world) - true) < true * (1 / 64, 1 / 64, 1 / 32) + 0.01 * true.mean()).all()
 
 
-def lit_by_eevee_without_sun(scene, passes):
+def lit_by_eevee_without_sun(scene, addon):
     """In a shell that holds the sun off, with its shadow, and nothing else of the world."""
     bpy.ops.mesh.primitive_ico_sphere_add(radius=30, subdivisions=2)
     scene.world.use_sun_shadow = True
-    return lit_by_eevee(scene, passes)
+    return lit_by_eevee(scene, addon)
 
 
 def test_a_picture_is_looked_at_once_a_render(scene, world, monkeypatch):
@@ -130,8 +130,7 @@ def test_a_picture_is_looked_at_once_a_render(scene, world, monkeypatch):
     first, calls = said(world), []
     monkeypatch.setattr(world, "harmonics", lambda *arguments: calls.append(1))
     assert np.array_equal(said(world), first) and not calls
-    world.forget()
-    said_anew = world.light(bpy.context.evaluated_depsgraph_get())
+    said_anew = world.light(bpy.context.evaluated_depsgraph_get(), {})
     assert calls and said_anew is None
     assert texture.image.size[0] == 128
 
@@ -177,7 +176,7 @@ def strange(scene, kind):
 )
 def test_what_is_not_known_is_left_alone(scene, world, kind):
     strange(scene, kind)
-    assert world.light(bpy.context.evaluated_depsgraph_get()) is None
+    assert world.light(bpy.context.evaluated_depsgraph_get(), {}) is None
 
 
 def test_harmonics_of_a_known_sky(world):

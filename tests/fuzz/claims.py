@@ -160,7 +160,7 @@ def _settle(module):
     bpy.context.view_layer.update()
     for scene in bpy.data.scenes:
         addon.diagnosis.checks.findings(scene)
-        if not scene.afterlight.role and addon.compositor.view_scenes.wanted(scene):
+        if not scene.afterlight.role and addon.scene.needs.views(scene):
             addon.compositor.view_scenes.placed(scene)
 
 
@@ -188,7 +188,10 @@ def _files(module, junk, at, damage):
     with open(path, "wb") as file:
         file.write(data)
     passes, status = module.addon.scene.passes, module.addon.host.report
-    for read in (lambda: passes.load(path, "ViewLayer", (0, 0, 7, 5)), lambda: passes.contents(path, ["ViewLayer"])):
+    for read in (
+        lambda: passes.load(path, "ViewLayer", (0, 0, 7, 5)),
+        lambda: module.addon.scene.exr.contents(path, ["ViewLayer"]),
+    ):
         try:
             read()
         except status.Problem as problem:

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which module of the add-on may import which: no circles, and the gather knows no scene. Read from the sources, with
+the imports inside functions, which hide a circle and do not undo it."""
+
+import ast
+from collections import Counter
+from pathlib import Path
+
+import extension
+
+ADDON = extension.ROOT / "addon"
+# Blender's modules that know nothing of scenes, and those that come with its Python.
+OF_THE_GATHER = {
+    "gpu",
+    "numpy",
+    "collections",
+    "dataclasses",
+    "functools",
+    "pathlib",
+    "time",
+    "typing",
+    "concurrent",
+    "re",
+}
+
+
+def modules(root):
+    """{dotted name: path} of a package's modules; "" is the package itself."""
+    found = {}
+    for path in sorted(root.rglob("*.py")):
+        parts = path.relative_to(root).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def imports(name, path, known):
+    """(names of modules of the package, names of modules outside) that one module imports, wherever it does."""
+    package = name.split(".") if path.name == "__init__.py" and name else name.split(".")[:-1]
+    inside, outside = set(), set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            outside |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            outside.add(node.module)
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join([*package[: len(package) + 1 - node.level], *(node.module or "").split(".")]).strip(".")
+            for alias in node.names:
+                full = f"{base}.{alias.name}".strip(".")
+                inside.add(full if full in known else base)
+    return inside, outside
+
+
+def circle(graph):
+    """A list of modules each of which imports the next and the last the first; empty where there is none."""
+    done, path = set(), []
+
+    def visit(name):
+        if name in path:
+            return path[path.index(name) :]
+        if name in done:
+            return []
+        path.append(name)
+        for other in sorted(graph[name]):
+            if found := visit(other):
+                return found
+        done.add(path.pop())
+        return []
+
+    return next((found for name in sorted(graph) if (found := visit(name))), [])
+
+
+def graph_of(root):
+    known = modules(root)
+    return {name: imports(name, path, known)[0] for name, path in known.items()}
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    assert circle(graph_of(ADDON)) == []
+
+
+def test_no_module_of_the_benchmarks_does():
+    assert circle(graph_of(extension.ROOT / "benchmarks")) == []
+
+
+def test_a_circle_is_found(tmp_path):
+    for name, text in {
+        "a": "from . import b",
+        "b": "def f():\n    from .c import x",
+        "c": "from . import a",
+        "d": "",
+    }.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    assert circle(graph_of(tmp_path)) == ["a", "b", "c"]
+    (tmp_path / "c.py").write_text("from . import d")
+    assert circle(graph_of(tmp_path)) == []
+
+
+def test_the_gather_knows_no_scene():
+    known = modules(ADDON)
+    for name, path in known.items():
+        if name.split(".")[0] == "gather":
+            inside, outside = imports(name, path, known)
+            assert {other.split(".")[0] for other in inside} <= {"gather"}, name
+            assert {other.split(".")[0] for other in outside} <= OF_THE_GATHER, name
+
+
+def test_no_two_modules_share_a_name():
+    for root in (ADDON, extension.ROOT / "benchmarks", extension.ROOT / "shaders"):
+        names = Counter(path.stem for path in root.rglob("*.*") if path.suffix in {".py", ".glsl"})
+        twice = {name for name, count in names.items() if count > 1} - {"__init__", "__main__"}
+        presets = {path.stem for path in (ADDON / "presets").rglob("*.py")}
+        assert not twice - presets, (root, twice)
+
+
+def test_files_can_be_held_in_the_head():
+    tables = {"addon/translations/de_DE.py"}  # one text a line
+    for path in sorted(Path(ADDON).rglob("*.py")):
+        lines = len(path.read_text().splitlines())
+        assert lines <= 340 or path.relative_to(extension.ROOT).as_posix() in tables, f"{path}: {lines} lines"
