@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings from scene to scene, presets, keyframes and drivers."""
 
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -52,6 +53,26 @@ def test_settings_go_to_other_scenes(scene, addon):
     assert two.afterlight.enabled and three.afterlight.enabled and not addon.compositor.setup.faults(three)
     with pytest.raises(RuntimeError, match='no other scene "Four"'):
         bpy.ops.afterlight.copy_settings(scene="Four")
+
+
+def test_listed_cameras_go_to_scenes_that_contain_them(scene, addon):
+    settings, shared = scene.afterlight, scene.camera
+    own = bpy.data.objects.new("Own", bpy.data.cameras.new("Own"))
+    scene.collection.objects.link(own)
+    with_it, without = bpy.data.scenes.new("With").afterlight, bpy.data.scenes.new("Without").afterlight
+    with_it.id_data.collection.objects.link(shared)
+    other = bpy.data.objects.new("Other", bpy.data.cameras.new("Other"))
+    for each in (with_it, without):
+        each.id_data.collection.objects.link(other)
+        each.view_cameras.add().camera = other
+    settings.views = "MANUAL"
+    for camera in (own, shared, None):
+        settings.view_cameras.add().camera = camera
+    assert bpy.ops.afterlight.copy_settings() == {"FINISHED"}
+    assert with_it.views == without.views == "MANUAL"
+    assert [each.camera for each in with_it.view_cameras] == [shared]
+    assert [each.camera for each in without.view_cameras] == [other], "none of them is there"
+    assert [each.camera for each in settings.view_cameras] == [own, shared, None]
 
 
 def test_reset_gives_the_defaults_and_names_what_is_animated(scene, addon, capfd):
@@ -234,6 +255,17 @@ def test_each_shipped_preset_has_a_tooltip_of_its_own(scene, addon):
     texts.append(operators.AFTERLIGHT_OT_preset.description(bpy.context, Entry))
     assert len(set(texts)) == len(texts) and texts[-1] == operators.AFTERLIGHT_OT_preset.bl_description
     assert addon.ui.panel.AFTERLIGHT_PT_presets.preset_operator == "afterlight.preset"
+
+
+def test_shipped_presets_set_what_their_method_has(addon):
+    stored = {each.name: each for each in addon.parameters.PARAMETERS if each.in_presets}
+    added = addon.ui.operators.AFTERLIGHT_OT_preset_add.preset_values
+    assert added == [f"settings.{name}" for name in stored]
+    for path in addon.ui.operators.PRESETS.glob("*.py"):
+        values = dict(re.findall(r'^settings\.(\w+) = "?(\w+)"?$', path.read_text(), re.M))
+        needed = {name for name, each in stored.items() if values["method"] in each.methods}
+        assert stored.keys() >= values.keys() >= needed - {"use_glossy"}, path
+        assert "use_glossy" not in values, "as the help says"
 
 
 # Keyframes and drivers

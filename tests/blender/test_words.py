@@ -75,13 +75,50 @@ def test_the_page_of_help_is_whole(addon):
     assert all(link.startswith("#") and link[1:] in page.ids for link in page.links), "nothing needs a network"
     for parameter in addon.parameters.PARAMETERS:
         assert f">{parameter.label} <" in text, parameter.label
+    for parameter in addon.parameters.PARAMETERS:
+        section = re.search(rf'<h3 id="{parameter.name}">.*?(?=<h[23])', text, re.S)[0]
+        for method in addon.parameters.GATHER_SETTINGS:
+            said = f"<p>{method.title()} only" in section
+            assert said == (parameter.methods == {method}), (parameter.name, method)
     start = next(parameter for parameter in addon.parameters.PARAMETERS if parameter.name == "start")
     for _, label, *_ in start.options["items"]:
         assert f"<th>{label}</th>" in text
     for preset in (ADDON / "presets" / "afterlight").glob("*.py"):
         values = re.findall(r"= (\d+)", preset.read_text())
-        row = re.search(rf"<th>{preset.stem.title()}</th><td>(.*?)</td>", text, re.S)[1]
+        presets = text[text.index('<h2 id="presets">') :]
+        row = re.search(rf"<th>{preset.stem.title()}</th><td>(.*?)</td>", presets, re.S)[1]
         assert all(value in row for value in values), preset
+
+
+def test_the_sections_of_settings_are_in_the_order_of_the_panel(addon):
+    names = [parameter.name for parameter in addon.parameters.PARAMETERS]
+    page = Anchors((extension.ROOT / "docs" / "help.html").read_text())
+    assert [each for each in page.ids if each in names] == names
+
+
+def test_help_names_the_settings_that_take_no_keyframes(addon):
+    text = (extension.ROOT / "docs" / "help.html").read_text()
+    named = re.search(r'<p id="not-animatable">.*?</p>', text, re.S)[0]
+    fixed = {parameter.name for parameter in addon.parameters.PARAMETERS if not parameter.is_animatable}
+    assert sorted(Anchors(named).links) == sorted(f"#{name}" for name in {"enabled", *fixed})
+
+
+def test_help_lists_the_stages_that_renders_report():
+    text = (extension.ROOT / "docs" / "help.html").read_text()
+    listed = re.findall(r"<tr><th>(.*?)</th>", text[text.index('id="last-render"') : text.index('id="messages"')])
+    assert listed == [f"{stage[:1].upper()}{stage[1:]}" for stage in STAGES]
+    code = "".join(path.read_text() for path in (ADDON / "render").glob("*.py"))
+    assert all(f'"{stage}"' in code for stage in STAGES), "no code reports it"
+
+
+def test_limits_of_bounces_are_told(addon):
+    """Placement and drafts count fewer of them than the setting says."""
+    depth, draft = addon.views.placement.DEPTH, addon.viewport.region_light.DRAFT_BOUNCES
+    bounces = next(parameter for parameter in addon.parameters.PARAMETERS if parameter.name == "bounces")
+    assert depth < bounces.options["max"] and f"the first {depth} bounces" in bounces.tooltip
+    text = (extension.ROOT / "docs" / "help.html").read_text()
+    section = text[text.index('<h3 id="bounces">') : text.index('<h3 id="use_visibility">')]
+    assert f"the first {depth} bounces" in section and f"compute {draft}." in section
 
 
 # Words
