@@ -186,7 +186,7 @@ TEXTS = {
     "Seen by the Camera": "Von der Kamera gesehen",
     "Seen with {} Views": "Mit {} Ansichten gesehen",
     "Placing": "Platzierung",
-    "There can be {} views at most": "Es sind höchstens {} Ansichten möglich",
+    "There can be at most {} views. Remove one first": "Es sind höchstens {} Ansichten möglich. Zuerst eine entfernen",
     "No views have been placed in this scene yet. Set Views to Automatic and press F12": (
         "In dieser Szene wurden noch keine Ansichten platziert. Ansichten auf Automatisch setzen und F12 drücken"
     ),
@@ -256,7 +256,7 @@ TEXTS = {
     "Open the help page of this version in the web browser. No internet connection is needed": (
         "Die Hilfeseite dieser Version im Webbrowser öffnen (englisch). Eine Internetverbindung ist nicht nötig"
     ),
-    "The help page is {}": "Die Hilfeseite ist {}",
+    "Help page: {}": "Hilfeseite: {}",
     "Load Indirect Light Preset": "Voreinstellung für indirektes Licht laden",
     "Load the settings of this preset. Strength, Viewport and the seed are kept": (
         "Die Einstellungen dieser Voreinstellung laden. Stärke, Ansichtsfenster und Startwert bleiben erhalten"

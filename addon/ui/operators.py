@@ -82,7 +82,7 @@ class AFTERLIGHT_OT_help(Operator):
     def execute(self, _context):
         webbrowser.open(help_page.address(self.section))
         # Some browsers may not read the folder of extensions, and give no error that Python could see.
-        self.report({"INFO"}, say("The help page is {}", help_page.PATH))
+        self.report({"INFO"}, say("Help page: {}", help_page.PATH))
         return {"FINISHED"}
 
 

@@ -102,7 +102,7 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
         if not super().poll(context):
             return False
         if len(context.scene.afterlight.view_cameras) >= needs.MOST_VIEWS:
-            cls.poll_message_set(say("There can be {} views at most", needs.MOST_VIEWS))
+            cls.poll_message_set(say("There can be at most {} views. Remove one first", needs.MOST_VIEWS))
             return False
         return True
 

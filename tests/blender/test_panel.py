@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel, as far as it shows without a window: what it holds, what is grey, what mends a scene at a click."""
+"""The panel, as far as it shows without a window: its rows, what is greyed out, and the fixes of a scene."""
 
 import bpy
 import numpy as np
@@ -127,7 +127,7 @@ def test_memory_is_what_the_textures_take(addon, monkeypatch, start, size, radiu
     assert light.gpu_bytes(width, height, settings) == most and held == 0
 
 
-# What mends
+# Fixes
 
 
 def other_engine(scene):
@@ -184,7 +184,7 @@ def all_in_groups(scene):
         tree.nodes.remove(node)
 
 
-MENDED = [
+SPOILED = [
     other_engine,
     another_camera,
     lamp_for_a_camera,
@@ -201,8 +201,8 @@ MENDED = [
 ]
 
 
-@pytest.mark.parametrize("spoil", MENDED)
-def test_one_click_mends_it_and_undo_takes_it_back(scene, addon, spoil):
+@pytest.mark.parametrize("spoil", SPOILED)
+def test_one_click_fixes_it_and_undo_takes_it_back(scene, addon, spoil):
     findings = addon.diagnosis.checks.findings
     (nested_tree if spoil == all_in_groups else simple_tree)(scene)
     scene.afterlight.enabled = True
@@ -221,7 +221,7 @@ def test_one_click_mends_it_and_undo_takes_it_back(scene, addon, spoil):
     before = written_down()
     assert bpy.ops.afterlight.mend(cure=found.fix) == {"FINISHED"}
     assert not findings(scene)
-    bpy.ops.ed.undo_push(message="mended")
+    bpy.ops.ed.undo_push(message="fixed")
     bpy.ops.ed.undo()
     assert not differences(before, written_down())
     assert [again.text for again in findings(bpy.context.scene)] == [found.text]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What people read: the page of help, tooltips, and all of it in another language."""
+"""What users read: the help page, tooltips and messages, and their translations."""
 
 import ast
 import inspect
