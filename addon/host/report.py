@@ -30,7 +30,7 @@ class _Report:
 
 _reports = {}  # by the scene's session_uid; global, since the panel shows them when their render is over
 _failed = False  # any render; global, since it decides the exit code of the process
-wants_stages = False  # a benchmark sets it: the GPU is then waited for after each stage
+wants_stages = False  # global: a benchmark sets it: the GPU is then waited for after each stage
 
 
 class Problem(Exception):

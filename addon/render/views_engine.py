@@ -33,8 +33,9 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
             job.reuse.begin_frame()
             main_thread.run(lambda: view_scenes.prepare(scene))
             # The views of a kept frame are used again; what keeps all light out, the engine of the light says.
-            if not job.replayed and not any(finding.fatal for finding in checks.findings(scene)):
-                self._place(job, scene, depsgraph)
+            if job.replayed or any(finding.fatal for finding in checks.findings(scene)):
+                return
+            self._place(job, scene, depsgraph)
         job.views_placed(scene, time.perf_counter() - start)
 
     def _place(self, job, scene, depsgraph):

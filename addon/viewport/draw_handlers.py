@@ -15,10 +15,12 @@ from .view_cache import Further
 
 LINE = 11  # points of the text's height
 
+# Global, since Blender calls us once for each region that it draws, and keeps nothing for us with it.
 _regions, _further = {}, {}  # by the address of the region, and of its viewport
-_waiting = set()  # addresses of regions that are to be drawn again
-_refused = {}  # why a scene's viewports are not lit, by its session_uid
-_handles = []
+# Global like these: addresses of regions that are to be drawn again.
+_waiting = set()
+_refused = {}  # global: why a scene's viewports are not lit, by its session_uid
+_handles = []  # global: what Blender gave for our functions, until they are removed
 
 
 def problem(scene):
