@@ -137,7 +137,8 @@ def _of_nodes(scene):
 def _of_probes(scene):
     if fixes.probe_volumes(scene):
         text = say(
-            "Baked light probe volumes already add indirect light. Disable them in renders, or delete their baked data"
+            "Light probe volumes add indirect light of their own once they are baked. Disable them in renders, or "
+            "delete their baked data"
         )
         yield Finding(text, "PROBES", fatal=False)
     if needs.glossy_light(scene) and holds_reflections(scene):

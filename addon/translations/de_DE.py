@@ -431,9 +431,10 @@ TEXTS = {
         "EEVEEs Raytracing fügt bereits indirektes Licht hinzu. Entweder Raytracing oder Indirekte Beleuchtung "
         "ausschalten"
     ),
-    "Baked light probe volumes already add indirect light. Disable them in renders, or delete their baked data": (
-        "Gebackene Lichtsonden-Volumen fügen bereits indirektes Licht hinzu. Sie in Renderings ausschalten oder ihre "
-        "gebackenen Daten löschen"
+    "Light probe volumes add indirect light of their own once they are baked. Disable them in renders, or delete "
+    "their baked data": (
+        "Lichtsonden-Volumen fügen selbst indirektes Licht hinzu, sobald sie gebacken sind. Sie in Renderings "
+        "ausschalten oder ihre gebackenen Daten löschen"
     ),
     "Light probe spheres and planes already reflect the scene, so Glossy Light is left out. Disable them in renders"
     " to use it": (

@@ -55,6 +55,8 @@ def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     for parameter in addon.parameters.PARAMETERS:
         bpy.ops.wm.doc_view_manual(doc_id=f"AfterlightSettings.{parameter.name}")
     bpy.ops.wm.doc_view_manual(doc_id="AfterlightSettings.enabled")
+    for doc_id in ("AfterlightSettings.view_cameras", "AfterlightView.camera"):
+        bpy.ops.wm.doc_view_manual(doc_id=doc_id)
     operators = [f"afterlight.{name}" for name in dir(bpy.ops.afterlight)]
     for operator in operators:
         bpy.ops.wm.doc_view_manual(doc_id=operator)
@@ -63,8 +65,9 @@ def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     anchors = Anchors(path.read_text()).ids
     sections = [section for _, section in opened]
     assert sections[:2] == ["", "samples"]
-    first = 3 + len(addon.parameters.PARAMETERS)
-    assert sections[2:first] == [*(parameter.name for parameter in addon.parameters.PARAMETERS), "enabled"]
+    settings = [*(parameter.name for parameter in addon.parameters.PARAMETERS), "enabled", "views", "views"]
+    first = 2 + len(settings)
+    assert sections[2:first] == settings
     assert len(sections) == first + len(operators) and set(sections[1:]) <= set(anchors)
 
 
