@@ -18,8 +18,8 @@ LINES = (
 )  # the view layer's switch, as passes.is_on() has it, and the pass
 OVER, UNDER = "Foreground", "Background"
 
-
-_held = set()  # session_uids of scenes that held Freestyle off in this session
+# session_uids of scenes that held Freestyle off in this session; global, since undo may bring that moment back.
+_held = set()
 
 
 def needed(scene, layer):

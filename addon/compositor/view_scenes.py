@@ -185,12 +185,12 @@ def posed(scene):
 def unusable(thing):
     """Why an object that the user lists can't be a view, as a sentence for people; empty where it can."""
     if thing is None:
-        return say("A view in the list has no camera. Choose one, or remove the line")
+        return say("A view in the list has no camera. Choose one, or remove the entry")
     if thing.type != "CAMERA":
-        return say('The view "{}" is no camera, and is left out. Choose a camera in its place', thing.name)
+        return say('The view "{}" is not a camera object and was left out. Choose a camera instead', thing.name)
     if thing.data.type not in {"PERSP", "ORTHO"}:
         return say(
-            'The view "{}" is panoramic, and is left out. Set its Lens Type to Perspective or Orthographic', thing.name
+            'The view "{}" is panoramic and was left out. Set its Lens Type to Perspective or Orthographic', thing.name
         )
     return ""
 

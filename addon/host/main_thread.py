@@ -27,9 +27,10 @@ RENDERING, IDLE = 0.0, 0.1  # seconds until the next look: while something rende
 PATIENCE = 0.05  # seconds that a call waits before it asks whether it is still wanted
 SURELY = 0.5  # seconds that one waits which must be made
 
-_calls = queue.SimpleQueue()  # (Future, call)
-_open = False  # whether anybody makes the calls; global like the queue, since the main thread is one
-_stopped = ContextVar("stopped", default=lambda: False)  # of the render whose thread this is
+_calls = queue.SimpleQueue()  # (Future, call); global, since the main thread is one
+_open = False  # whether anybody makes the calls; global like the queue
+# Whether the render stops whose thread this is; global, and yet of one thread.
+_stopped = ContextVar("stopped", default=lambda: False)
 
 
 @contextmanager

@@ -6,8 +6,10 @@ handler, a timer, a driver or a thread, crashes Blender. Whoever wants to asks p
 to wait are set up, or cleared, when the render is over.
 """
 
-_renders = []  # for each render that goes on, whether it is locked: one may begin within another's handlers
-_waiting = set()  # session_uids of scenes
+# For each render that goes on, whether it is locked: one may begin within another's handlers. Global, and no part of
+# render/job.py, since whatever changes the file asks here, below the render.
+_renders = []
+_waiting = set()  # session_uids of scenes; global, since they wait for whichever render ends last
 
 
 def begin():

@@ -30,7 +30,7 @@ class _Report:
 
 _reports = {}  # by the scene's session_uid; global, since the panel shows them when their render is over
 _failed = False  # any render; global, since it decides the exit code of the process
-wants_stages = False  # a benchmark sets it: the GPU is then waited for after each stage
+wants_stages = False  # global: a benchmark sets it: the GPU is then waited for after each stage
 
 
 class Problem(Exception):
@@ -59,7 +59,7 @@ class Reporter:
             tell_traceback()
             tell(
                 scene,
-                say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
+                say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
             )
 
     def _fail(self, scene, text):
@@ -84,7 +84,7 @@ def fail(scene, text):
     if message(scene) == text:
         return False
     _of(scene).message = text
-    pop_up(text, say("Afterlight: the picture has no indirect light"))
+    pop_up(text, say("Afterlight: the image has no indirect light"))
     return True
 
 
@@ -182,7 +182,7 @@ def _exit_code():
     """
     if not _failed:
         return
-    tell("Afterlight: exit code 1, because a render was not lit", sys.stderr)
+    tell("Afterlight: exit code 1, because a render has no indirect light", sys.stderr)
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()

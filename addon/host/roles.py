@@ -13,7 +13,8 @@ HELPER, SCOUT, VIEW = "HELPER", "SCOUT", "VIEW"
 SIDE = 4  # pixels along a side of the frame of our scenes: they are rendered at the lit scene's
 MARK = "afterlight"  # custom property of our nodes, trees and cameras, and of the scenes of 0.1.0 to 0.3.0
 
-_seen = set()  # session_uids of scenes that were ours at some moment of this session
+# session_uids of scenes that were ours at some moment of this session; global, since the file alone can be made up.
+_seen = set()
 
 
 def is_helper(scene):

@@ -33,7 +33,7 @@ LONGEST = 0.005  # seconds that looking may take: folders that are left then wai
 # Whether folders are worked in by their descriptors, so that nobody can put others in their places meanwhile.
 BY_DESCRIPTOR = {os.open, os.stat, os.unlink, os.rmdir} <= os.supports_dir_fd and os.listdir in os.supports_fd
 
-_folders = []  # of _Own; the last is the one that is written to
+_folders = []  # of _Own; the last is the one that is written to. Global, as they live until Blender ends
 
 
 def new(number):

@@ -33,8 +33,9 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
             job.reuse.begin_frame()
             main_thread.run(lambda: view_scenes.prepare(scene))
             # The views of a kept frame are used again; what keeps all light out, the engine of the light says.
-            if not job.replayed and not any(finding.fatal for finding in checks.findings(scene)):
-                self._place(job, scene, depsgraph)
+            if job.replayed or any(finding.fatal for finding in checks.findings(scene)):
+                return
+            self._place(job, scene, depsgraph)
         job.views_placed(scene, time.perf_counter() - start)
 
     def _place(self, job, scene, depsgraph):
@@ -54,7 +55,7 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
         paths, seen = look(placement.PATHS)
         if paths is None:
             if not by_hand:
-                self._warn(scene, say("No views were placed: no surface lights what the camera sees"))
+                self._warn(scene, say("No views were placed, because no surface adds light to what the camera sees"))
             return
         if by_hand:
             shares = self._score(scene, depsgraph, paths, seen, geometry.cast)
@@ -97,8 +98,8 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
                 self._warn(
                     scene,
                     say(
-                        'The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
-                        "a wall, or look away. Move it, or remove it from the list",
+                        'The view "{}" sees no surface that lights the image and was left out. It may be inside a wall '
+                        "or face away. Move it, or remove it from the list",
                         each.camera.name,
                     ),
                 )
@@ -121,9 +122,7 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
             known = placement.Placement(poses, shares, placement.CLEARANCE * paths.size)
             main_thread.run(lambda: view_scenes.keep_placed(scene, known))
             if not poses and shares[0] < 1 - placement.FALL:
-                self._warn(
-                    scene, say("No views were placed: there is no free place that shows more than the camera does")
-                )
+                self._warn(scene, say("No views were placed, because no free position shows more than the camera does"))
         far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * paths.size)
         lens = view_cameras.wide_lens(scene, known.clearance / 4, far)
         main_thread.run(

@@ -16,7 +16,8 @@ from ..gather import device
 
 VERTICES = (-1, -1), (3, -1), (-1, 3)  # of a triangle that holds the whole frame
 
-_picture = None  # the framebuffer of the engine's picture, of the viewport that is being drawn
+# The framebuffer of the engine's picture, of the viewport that is being drawn; global, since Blender makes two calls.
+_picture = None
 
 
 def remember():

@@ -19,8 +19,8 @@ class Stamps:
     shapes: int = 0
 
 
-_stamps = {}  # by the scene's session_uid
-_outlines = {}  # what _outline() gave last
+_stamps = {}  # by the scene's session_uid; global, since all viewports of a scene ask
+_outlines = {}  # what _outline() gave last; global like the stamps
 
 
 def stamps(scene):
