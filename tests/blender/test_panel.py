@@ -115,7 +115,7 @@ def test_memory_is_what_the_textures_take(addon, monkeypatch, start, size, radiu
 
     device = light.device
     monkeypatch.setattr(device, "texture", Texture)
-    monkeypatch.setattr(device, "dispatch", lambda *_: None)
+    monkeypatch.setattr(device, "dispatch", lambda *_, **__: None)
     monkeypatch.setattr(device, "wait", lambda *_: None)
     monkeypatch.setattr(device, "read", lambda texture: np.zeros((texture.height, texture.width, 4), np.float32))
     width, height = size
