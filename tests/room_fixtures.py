@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Views of a room of boxes, traced exactly. Needs no Blender: `light` is addon/light, however it was loaded."""
+"""Views of a room of boxes, traced exactly. Needs no Blender: `light` is addon/gather, however it was loaded."""
 
 import numpy as np
 

@@ -99,7 +99,7 @@ def sums(base, other_radiance, surfaces, seed, rays=RAYS):
     exact sum and c the share that arrives in the *other* half: where all or nothing arrives, that is exact.
     """
     shape, area = base.area.shape, base.area.ravel()
-    place, vector_area = base.place.reshape(-1, 3), base.vector_area.reshape(-1, 3)
+    place, vector_area = base.position.reshape(-1, 3), base.vector_area.reshape(-1, 3)
     normal, there = reference.direction(vector_area), np.flatnonzero(area > 0)
     sent = np.concatenate([np.pi * base.radiance, np.pi * other_radiance, np.ones((*shape, 1))], -1).reshape(-1, 7)
     weight = 1 + sum(light.mean(-1) / max(light[there].mean(), 1e-300) for light in (sent[:, :3], sent[:, 3:6]))
@@ -168,7 +168,7 @@ def points_shown(tree, passes, camera):
     be smoothed. From there a ray would hit the surface that it leaves."""
     depth = passes.depth[::-1].astype(np.float64)
     depth = np.where((depth > 0) & (depth < reference.FARTHEST), depth, 0)
-    place = reference.view_place(camera, reference.pixel_centres(*depth.shape), depth)
+    place = reference.view_position(camera, reference.pixel_centres(*depth.shape), depth)
     reach = depth[..., None] * (0, 0, -1) if camera.orthographic else place.copy()
     normal = reference.direction(reference.bottom_first(passes.normal) @ np.asarray(camera.rotation).T)
     for index in zip(*np.nonzero(depth)):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's `gpu` module as far as addon/light uses it, on a bare OpenGL context, with a timer query around every
+"""Blender's `gpu` module as far as addon/gather uses it, on a bare OpenGL context, with a timer query around every
 dispatch.
 
     from benchmarks.gpu import opengl
-    light = opengl.start()                   # addon/light itself: the same host code, the same shader files, no Blender
+    light = opengl.start()                   # addon/gather itself: the same host code, the same shader files, no Blender
     with opengl.timed(light) as passes:
         light.gather_indirect(...)
     sum(passes["gather"])                    # seconds on the GPU, one entry a dispatch
@@ -57,7 +57,7 @@ def context() -> moderngl.Context:
 
 
 def start() -> ModuleType:
-    """addon/light as a package of its own, on this module in place of Blender's `gpu`."""
+    """addon/gather as a package of its own, on this module in place of Blender's `gpu`."""
     if "bpy" in sys.modules:
         raise RuntimeError("Blender is loaded: its own gpu module would be hidden")
     context()

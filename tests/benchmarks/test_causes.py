@@ -50,7 +50,7 @@ def prepared(scene, passes, camera, start=1):
 
 def known_visibility(base, top):
     """(texels, texels) bool, from where the line between two places crosses x = 0."""
-    x, y, _ = base.place.reshape(-1, 3).T
+    x, y, _ = base.position.reshape(-1, 3).T
     across = np.multiply.outer(x, x) < 0
     share = np.divide.outer(x, np.ones_like(x)) / np.where(across, np.subtract.outer(x, x), 1)
     crossing = y[:, None] - share * np.subtract.outer(y, y)
@@ -58,7 +58,7 @@ def known_visibility(base, top):
 
 
 def forms(base):
-    place, vector_area = base.place.reshape(-1, 3), base.vector_area.reshape(-1, 3)
+    place, vector_area = base.position.reshape(-1, 3), base.vector_area.reshape(-1, 3)
     return reference.form_factor(
         place[:, None], reference.direction(vector_area)[:, None], place, base.area.ravel(), vector_area
     )
@@ -88,7 +88,7 @@ def test_rays_are_stopped_where_the_wall_stands_and_nowhere_else(box, top, stopp
     receivers, emitters = np.nonzero(forms(base) > 0)
     seen = surfaces.see(receivers, emitters, np.random.default_rng(0))
     assert np.array_equal(seen, expected[receivers, emitters])
-    across = np.sign(base.place[..., 0].ravel()[receivers]) != np.sign(base.place[..., 0].ravel()[emitters])
+    across = np.sign(base.position[..., 0].ravel()[receivers]) != np.sign(base.position[..., 0].ravel()[emitters])
     assert 1 - seen[across].mean() == pytest.approx(stopped, abs=0.02) and seen[~across].all()
 
 
@@ -96,7 +96,7 @@ def test_behind_a_wall_it_is_dark(box):
     """Only what lies left of the wall sends: right of it exactly nothing arrives, and left of it as much as without."""
     divide(1.0)
     base, surfaces = prepared(*box)
-    left = base.place[..., 0] < 0
+    left = base.position[..., 0] < 0
     base.radiance = np.where(left[..., None], base.radiance, 0)
     everything, halves = causes.sums(base, base.radiance, surfaces, seed=0)
     arrived = halves.mean(0)[..., :3]
