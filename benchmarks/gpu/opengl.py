@@ -3,7 +3,7 @@
 dispatch.
 
     from benchmarks.gpu import opengl
-    light = opengl.start()                   # addon/gather itself: the same host code, the same shader files, no Blender
+    light = opengl.start()            # addon/gather itself: the same host code, the same shader files, no Blender
     with opengl.timed(light) as passes:
         light.gather_indirect(...)
     sum(passes["gather"])                    # seconds on the GPU, one entry a dispatch
