@@ -191,7 +191,7 @@ PARAMETERS = (
         "How many views are placed at most. Fewer are placed, at less cost, where a further one would see little "
         "that is "
         "new",
-        {"default": 7, "min": 1, "max": view_scenes.MOST, "options": set(), "update": _rewire},
+        {"default": 7, "min": 1, "max": view_scenes.MAX_VIEWS, "options": set(), "update": _rewire},
     ),
     Parameter(
         "use_history",

@@ -10,13 +10,13 @@ come as a pass of their own, and a node of ours lays that over the lit picture, 
 """
 
 from ..scene import passes
-from .nodes import RESULT, A, new_node, role, shows_picture, socket, source
+from .nodes import RESULT, A, adds_to_image_of, linked_node, new_node, role, socket
 
-LINES = (
+LINE_PASS = (
     "freestyle_settings.as_render_pass",
     "Freestyle",
 )  # the view layer's switch, as passes.is_on() has it, and the pass
-OVER, UNDER = "Foreground", "Background"
+FOREGROUND, BACKGROUND = "Foreground", "Background"
 
 
 _held = set()  # session_uids of scenes that held Freestyle off in this session
@@ -26,10 +26,10 @@ def needed(scene, layer):
     """(switch, pass) of the lines of a view layer: nothing where there are none, or the user has them as a pass
     already."""
     draws = (scene.render.use_freestyle or _is_held(scene)) and layer.use_freestyle
-    return (LINES,) if draws and (_are_ours(layer) or not passes.is_on(layer, LINES[0])) else ()
+    return (LINE_PASS,) if draws and (_are_ours(layer) or not passes.is_on(layer, LINE_PASS[0])) else ()
 
 
-def hold(scene):
+def suspend_drawing(scene):
     """Keep Blender from drawing the lines in the next render, which repeats passes that have them. release() must
     follow."""
     if scene.render.use_freestyle:
@@ -39,7 +39,7 @@ def hold(scene):
         scene.render.use_freestyle = False
 
 
-def release(scene):
+def resume_drawing(scene):
     """Let Blender draw the lines again, after hold()."""
     if _is_held(scene):
         scene.render.use_freestyle = True
@@ -53,7 +53,7 @@ def _is_held(scene):
 def splice(tree, scene):
     """Lay the lines over what the adding nodes of a tree make of the picture of `scene`, where we made them a pass."""
     for add in _adding(tree, scene):
-        picture, result = source(add, A), socket(add.outputs, RESULT)
+        picture, result = linked_node(add, A), socket(add.outputs, RESULT)
         users = [(link.to_socket, link.is_muted) for link in result.links]
         if "Freestyle" not in picture.outputs or any(role(user.node) == "lines" for user, _ in users):
             continue
@@ -61,9 +61,9 @@ def splice(tree, scene):
         over.name = over.label = "Afterlight: Freestyle"
         for user, is_muted in users:
             tree.links.new(over.outputs["Image"], user).is_muted = is_muted
-        over.inputs[OVER].default_value = 0.0, 0.0, 0.0, 0.0
-        tree.links.new(result, over.inputs[UNDER])
-        tree.links.new(picture.outputs["Freestyle"], over.inputs[OVER])
+        over.inputs[FOREGROUND].default_value = 0.0, 0.0, 0.0, 0.0
+        tree.links.new(result, over.inputs[BACKGROUND])
+        tree.links.new(picture.outputs["Freestyle"], over.inputs[FOREGROUND])
         over.parent, over.hide = add.parent, True
         over.location = add.location[0] + 160, add.location[1] + 40
 
@@ -71,10 +71,10 @@ def splice(tree, scene):
 def unsplice(tree, scene):
     """Take out what splice() put in and is not wanted any more, or has lost what it lay over."""
     for over in [node for node in tree.nodes if role(node) == "lines"]:
-        add = source(over, UNDER)
-        picture = source(add, A) if add and role(add) == "add" else None
+        add = linked_node(over, BACKGROUND)
+        picture = linked_node(add, A) if add and role(add) == "add" else None
         if picture is None or picture.scene is None or picture.scene == scene and not is_wanted(scene, picture.layer):
-            under = next((link.from_socket for link in over.inputs[UNDER].links), None)
+            under = next((link.from_socket for link in over.inputs[BACKGROUND].links), None)
             users = [(link.to_socket, link.is_muted) for link in over.outputs["Image"].links]
             tree.nodes.remove(over)
             for user, is_muted in users if under else ():
@@ -99,10 +99,10 @@ def _adding(tree, scene):
     return [
         node
         for node in tree.nodes
-        if role(node) == "add" and shows_picture(node, scene) and is_wanted(scene, source(node, A).layer)
+        if role(node) == "add" and adds_to_image_of(node, scene) and is_wanted(scene, linked_node(node, A).layer)
     ]
 
 
 def _are_ours(layer):
     """Whether it was us who made the lines of a view layer a pass."""
-    return LINES[0] in layer.afterlight.passes.split(",")
+    return LINE_PASS[0] in layer.afterlight.passes.split(",")

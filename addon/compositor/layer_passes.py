@@ -14,12 +14,12 @@ _ALL = dict(
         roughness.DIRECT,
         roughness.MATERIAL,
         *transmittance.PASSES,
-        freestyle.LINES,
+        freestyle.LINE_PASS,
     )
 )
 
 
-def of_the_gather(scene, layer):
+def for_gather(scene, layer):
     """(switch, pass) of all that the gather reads of a view layer."""
     settings = scene.afterlight
     shines = settings.use_glossy and needs.has_views(settings)
@@ -28,7 +28,7 @@ def of_the_gather(scene, layer):
 
 def wanted(scene, layer):
     """(switch, pass) of all that is read of a view layer."""
-    return [*of_the_gather(scene, layer), *transmittance.needed(scene), *freestyle.needed(scene, layer)]
+    return [*for_gather(scene, layer), *transmittance.needed(scene), *freestyle.needed(scene, layer)]
 
 
 def switch(scene, layer, read):
@@ -40,9 +40,9 @@ def switch(scene, layer, read):
     for each, name in _ALL.items():
         if each in wanted_now and not passes.is_on(layer, each):
             ours.add(each)
-            passes.turn(layer, each, True)
+            passes.set_enabled(layer, each, True)
         elif each in unwanted and name not in used:
-            passes.turn(layer, each, False)
+            passes.set_enabled(layer, each, False)
     assign(layer.afterlight, "passes", ",".join(sorted(ours - unwanted)))
 
 

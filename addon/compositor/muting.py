@@ -2,11 +2,11 @@
 """No light without its picture: where a Render Layers node is muted, or its link, so is our light."""
 
 from ..host.assign import assign
-from .nodes import RESULT, A, B, light_of, role, shows_picture, socket
+from .nodes import RESULT, A, B, adds_to_image_of, light_node_of, role, socket
 
 MUTED = "afterlight_muted"  # custom property of light nodes that we muted because their picture is
 BLACK, CLEAR = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0)
-TAKES = {
+UNLINKED_VALUES = {
     "add": {B: BLACK},
     "gloss": {A: CLEAR, B: BLACK},
     "denoise": {"Image": BLACK},
@@ -17,13 +17,13 @@ def follow(tree, scene):
     """Where a picture of `scene` is muted, by its node or by its link, mute its light as well: no light without its
     picture. Whoever used the picture then gets what it would get without us, the value of its own socket."""
     for node in tree.nodes:
-        for identifier, value in TAKES.get(role(node), {}).items():
+        for identifier, value in UNLINKED_VALUES.get(role(node), {}).items():
             assign(socket(node.inputs, identifier), "default_value", value)
-    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
+    for add in [node for node in tree.nodes if role(node) == "add" and adds_to_image_of(node, scene)]:
         link = socket(add.inputs, A).links[0]
         users = _users(socket(add.outputs, RESULT))
         assign(link.to_socket, "default_value", _as_color(users[0]) if users else CLEAR)
-        light, is_muted = light_of(add), link.is_muted or link.from_node.mute
+        light, is_muted = light_node_of(add), link.is_muted or link.from_node.mute
         if light is None or role(light) != "light":
             continue
         if is_muted and not light.mute:

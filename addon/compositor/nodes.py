@@ -13,7 +13,7 @@ nodes themselves, so what a user moves, renames or deletes is never restored fro
 
 from ..host.roles import MARK, is_helper
 
-KINDS = {
+NODE_TYPES = {
     "add": {"ShaderNodeMix"},
     "gloss": {"ShaderNodeMix"},
     "denoise": {"CompositorNodeDenoise"},
@@ -47,7 +47,7 @@ def role(node):
     """One of KINDS, or None for the user's own: a mark on a node that can't have that role is not ours. "plain" is an
     ordinary node in a tree that we made."""
     kind = node.get(MARK)
-    if not isinstance(kind, str) or node.bl_idname not in KINDS.get(kind, ()):
+    if not isinstance(kind, str) or node.bl_idname not in NODE_TYPES.get(kind, ()):
         return None
     if kind in {"light", "request", "view"} and node.scene is not None and not is_helper(node.scene):
         return None
@@ -59,7 +59,7 @@ def shows(node, scene):
     return node.bl_idname == "CompositorNodeRLayers" and node.scene == scene
 
 
-def pictures(tree, scene):
+def image_nodes(tree, scene):
     """The Render Layers nodes that bring the plain picture of `scene` into the tree or its groups."""
     return [node for node in all_nodes(tree) if shows(node, scene) and "Image" in node.outputs]
 
@@ -76,27 +76,27 @@ def uses_light(tree, scene, helper):
     )
 
 
-def without_picture(tree, helper):
+def adds_to_nothing(tree, helper):
     """The nodes that add the light of `helper` to nothing, since the link of the image was taken away."""
     return [
         node
         for node in tree.nodes
         if role(node) == "add"
-        and source(node, A) is None
-        and (light := light_of(node))
+        and linked_node(node, A) is None
+        and (light := light_node_of(node))
         and light.bl_idname == "CompositorNodeRLayers"
         and light.scene == helper
     ]
 
 
-def request(tree, scene, helper):
+def request_render(tree, scene, helper):
     """Have Blender render `helper`: it looks for scenes only among the nodes of the top level, not in groups."""
     others = [node for node in tree.nodes if shows(node, helper) and role(node) != "request"]
     for node in [node for node in tree.nodes if role(node) == "request" and others]:
         tree.nodes.remove(node)
-    found = pictures(tree, scene)
+    found = image_nodes(tree, scene)
     if found and not any(shows(node, helper) for node in tree.nodes):
-        node = light_node(tree, helper, found[0].layer, "request")
+        node = new_light_node(tree, helper, found[0].layer, "request")
         node.location = (-400, -400)
 
 
@@ -105,7 +105,7 @@ def used_passes(scene, layer):
     tree = scene.compositing_node_group
     used = {
         output.name
-        for node in pictures(tree, scene)
+        for node in image_nodes(tree, scene)
         if node.layer == layer
         for output in node.outputs
         if output.is_linked
@@ -118,16 +118,16 @@ def used_passes(scene, layer):
     return used
 
 
-def goes_dark(node):
+def lacks_light(node):
     """Whether somebody uses the image of this Render Layers node without our light in it."""
     return any(role(link.to_node) != "add" for link in node.outputs["Image"].links)
 
 
-def lost_image(tree, scene, helper):
+def layers_without_image(tree, scene, helper):
     """View layers whose adding node is gone together with the links it had: nobody uses their image any more."""
     found = []
     for light in [node for node in tree.nodes if shows(node, helper) and role(node) == "light" and _is_idle(node)]:
-        images = [picture.outputs["Image"] for picture in pictures(tree, scene) if picture.layer == light.layer]
+        images = [picture.outputs["Image"] for picture in image_nodes(tree, scene) if picture.layer == light.layer]
         if images and not any(image.is_linked for image in images):
             found.append(light.layer)
     return found
@@ -135,16 +135,16 @@ def lost_image(tree, scene, helper):
 
 def splice(tree, picture, helper):
     """Put the light of `helper` between the image of a Render Layers node and whatever uses it."""
-    for add in [add for add in without_picture(tree, helper) if light_of(add).layer == picture.layer]:
+    for add in [add for add in adds_to_nothing(tree, helper) if light_node_of(add).layer == picture.layer]:
         tree.links.new(picture.outputs["Image"], socket(add.inputs, A))
     for link in picture.outputs["Image"].links:
-        if role(link.to_node) == "add" and not lights_way_in(link.to_node).links:
-            tree.links.new(_light_for(tree, picture, helper).outputs[PASS], lights_way_in(link.to_node))
+        if role(link.to_node) == "add" and not light_input(link.to_node).links:
+            tree.links.new(_light_for(tree, picture, helper).outputs[PASS], light_input(link.to_node))
     links = [link for link in picture.outputs["Image"].links if role(link.to_node) != "add"]
     if not links:
         return
     users = [(link.to_socket, link.is_muted) for link in links]
-    add = summing(tree, "add", "Afterlight")
+    add = new_sum_node(tree, "add", "Afterlight")
     light = _light_for(tree, picture, helper)
     for user, is_muted in users:
         tree.links.new(socket(add.outputs, RESULT), user).is_muted = is_muted
@@ -161,7 +161,7 @@ def unsplice(tree, scene, helpers):
     light it was; None among them stands for those that have been deleted."""
     lights = [node for node in tree.nodes if role(node) in {"light", "request"} and node.scene in helpers]
     for add in [node for node in tree.nodes if role(node) == "add"]:
-        light, picture = source(add, B), source(add, A)
+        light, picture = linked_node(add, B), linked_node(add, A)
         if (light in lights) if light else (picture is None or shows(picture, scene)):
             plain, cut = next(
                 ((link.from_socket, link.is_muted) for link in socket(add.inputs, A).links), (None, False)
@@ -174,25 +174,25 @@ def unsplice(tree, scene, helpers):
         tree.nodes.remove(light)
 
 
-def shows_picture(add, scene):
+def adds_to_image_of(add, scene):
     """Whether an adding node adds to the picture of `scene`."""
-    picture = source(add, A)
+    picture = linked_node(add, A)
     return picture is not None and shows(picture, scene)
 
 
-def light_of(add):
+def light_node_of(add):
     """The node whose light an adding node adds, before it is denoised and the glossy light comes to it."""
-    return next((link.from_node for link in lights_way_in(add).links), None)
+    return next((link.from_node for link in light_input(add).links), None)
 
 
-def lights_way_in(add):
+def light_input(add):
     """The input of an adding node, or of the first node of ours before it, that takes the light as it was gathered."""
-    taken = takes_light(add)
+    taken = denoised_light_input(add)
     node = next((link.from_node for link in taken.links), None)
     return socket(node.inputs, "Image") if node and role(node) == "denoise" else taken
 
 
-def light_node(tree, helper, layer, kind="light"):
+def new_light_node(tree, helper, layer, kind="light"):
     """A Render Layers node that shows the indirect light of one view layer."""
     light = new_node(tree, "CompositorNodeRLayers", kind)
     light.label = "Afterlight: Indirect Light"
@@ -200,7 +200,7 @@ def light_node(tree, helper, layer, kind="light"):
     return light
 
 
-def view_node(tree, view):
+def new_view_node(tree, view):
     """A Render Layers node for which Blender renders a view. Nothing is linked to it."""
     node = new_node(tree, "CompositorNodeRLayers", "view")
     node.label = "Afterlight: View"
@@ -240,7 +240,7 @@ def _remake(tree, old):
         tree.nodes.active = new
 
 
-def picture_node(tree, scene):
+def new_image_node(tree, scene):
     """A Render Layers node that shows `scene`: the first view layer that is rendered."""
     picture = tree.nodes.new("CompositorNodeRLayers")
     picture.scene = scene
@@ -261,13 +261,13 @@ def retarget(tree, scene, old, helper):
             if layer in helper.view_layers:
                 node.layer = layer
     for add in [node for node in tree.nodes if role(node) == "add"]:
-        light, picture = light_of(add), source(add, A)
+        light, picture = light_node_of(add), linked_node(add, A)
         if light and picture and role(light) == "light" and light.scene == helper and shows(picture, scene):
             if light.layer != picture.layer:
                 light.layer = picture.layer
 
 
-def source(node, identifier):
+def linked_node(node, identifier):
     """The node that an input is linked to, or None."""
     return next((link.from_node for link in socket(node.inputs, identifier).links), None)
 
@@ -283,7 +283,7 @@ def _light_for(tree, picture, helper):
         for node in tree.nodes
         if shows(node, helper) and role(node) == "light" and node.layer == picture.layer and _is_idle(node)
     )
-    return next(idle, None) or light_node(tree, helper, picture.layer)
+    return next(idle, None) or new_light_node(tree, helper, picture.layer)
 
 
 def _is_idle(light):
@@ -299,13 +299,13 @@ def _is_used(node):
     )
 
 
-def takes_light(add):
+def denoised_light_input(add):
     """The input by which the light comes to an adding node, or to the node that adds the glossy light before it."""
-    node = source(add, B)
+    node = linked_node(add, B)
     return socket(node.inputs, A) if node and role(node) == "gloss" else socket(add.inputs, B)
 
 
-def summing(tree, kind, name):
+def new_sum_node(tree, kind, name):
     """A node of ours that adds B to A."""
     node = new_node(tree, "ShaderNodeMix", kind)
     node.name = node.label = name

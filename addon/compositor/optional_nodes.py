@@ -7,14 +7,27 @@ light.Indirect -> denoise -> A
 light.Indirect Glossy -----> B
 """
 
-from .nodes import GLOSSY_PASS, RESULT, A, B, new_node, role, shows, shows_picture, socket, source, summing, takes_light
+from .nodes import (
+    GLOSSY_PASS,
+    RESULT,
+    A,
+    B,
+    adds_to_image_of,
+    denoised_light_input,
+    linked_node,
+    new_node,
+    new_sum_node,
+    role,
+    shows,
+    socket,
+)
 
 
 def splice_gloss(tree, scene, helper):
     """Put the glossy light of `helper` between its light and the nodes that add it to the picture."""
-    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
+    for add in [node for node in tree.nodes if role(node) == "add" and adds_to_image_of(node, scene)]:
         given = next((link.from_socket for link in socket(add.inputs, B).links), None)
-        picture = source(add, A)
+        picture = linked_node(add, A)
         light = next(
             (
                 node
@@ -27,19 +40,19 @@ def splice_gloss(tree, scene, helper):
             continue
         gloss = given.node
         if role(gloss) != "gloss":
-            gloss = summing(tree, "gloss", "Afterlight: Glossy")
+            gloss = new_sum_node(tree, "gloss", "Afterlight: Glossy")
             tree.links.new(given, socket(gloss.inputs, A))
             tree.links.new(socket(gloss.outputs, RESULT), socket(add.inputs, B))
             gloss.parent, gloss.hide = add.parent, True
             gloss.location = add.location[0] - 40, add.location[1] - 200
-        if not source(gloss, B):
+        if not linked_node(gloss, B):
             tree.links.new(light.outputs[GLOSSY_PASS], socket(gloss.inputs, B))
 
 
 def unsplice_gloss(tree, helpers):
     """Take out what splice_gloss() put in. helpers: as nodes.unsplice() has them."""
     for gloss in [node for node in tree.nodes if role(node) == "gloss"]:
-        light = source(gloss, B)
+        light = linked_node(gloss, B)
         if light is None or light.scene in helpers:
             given = next((link.from_socket for link in socket(gloss.inputs, A).links), None)
             users = [link.to_socket for link in socket(gloss.outputs, RESULT).links]
@@ -50,17 +63,17 @@ def unsplice_gloss(tree, helpers):
 
 def lacks_gloss(tree, scene):
     """Whether a node that adds light to the picture of `scene` adds no glossy light."""
-    lights = [source(node, B) for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]
-    return any(light and (role(light) != "gloss" or not source(light, B)) for light in lights)
+    lights = [linked_node(node, B) for node in tree.nodes if role(node) == "add" and adds_to_image_of(node, scene)]
+    return any(light and (role(light) != "gloss" or not linked_node(light, B)) for light in lights)
 
 
 def splice_denoise(tree, scene):
     """Put a Denoise node behind the light of each node that adds it to the picture of `scene`."""
-    for add in [node for node in tree.nodes if role(node) == "add" and shows_picture(node, scene)]:
-        target = takes_light(add)
+    for add in [node for node in tree.nodes if role(node) == "add" and adds_to_image_of(node, scene)]:
+        target = denoised_light_input(add)
         given = next((link.from_socket for link in target.links), None)
         if given is not None and role(given.node) == "light":
-            picture, denoise = source(add, A), new_node(tree, "CompositorNodeDenoise", "denoise")
+            picture, denoise = linked_node(add, A), new_node(tree, "CompositorNodeDenoise", "denoise")
             denoise.name = denoise.label = "Afterlight: Denoise"
             for own, output in (
                 ("Image", given),
@@ -76,7 +89,7 @@ def splice_denoise(tree, scene):
 def unsplice_denoise(tree, helpers):
     """Take out what splice_denoise() put in. helpers: as nodes.unsplice() has them."""
     for denoise in [node for node in tree.nodes if role(node) == "denoise"]:
-        light = source(denoise, "Image")
+        light = linked_node(denoise, "Image")
         if light is None or light.scene in helpers:
             given = next((link.from_socket for link in denoise.inputs["Image"].links), None)
             users = [link.to_socket for link in denoise.outputs["Image"].links]
@@ -90,6 +103,6 @@ def lacks_denoise(tree, scene):
     return any(
         role(link.from_node) == "light"
         for node in tree.nodes
-        if role(node) == "add" and shows_picture(node, scene)
-        for link in takes_light(node).links
+        if role(node) == "add" and adds_to_image_of(node, scene)
+        for link in denoised_light_input(node).links
     )

@@ -36,7 +36,7 @@ def adopt(scene):
         tree[MARK] = TREE
 
 
-def in_use(scene):
+def tree_to_use(scene):
     """The compositor tree to wire: the user's own where it is in use, else one of ours."""
     settings, render = scene.afterlight, scene.render
     tree = scene.compositing_node_group
@@ -52,7 +52,7 @@ def in_use(scene):
         settings.compositing_was_off, settings.set_aside = True, tree
         render.use_compositing = True
     own = settings.own_tree
-    is_free = own is not None and not _is_anothers(own, scene)
+    is_free = own is not None and not _belongs_to_other_scene(own, scene)
     if is_free and is_untouched(scene, own):  # the user has taken it out of use
         _link_image(own)
     else:
@@ -68,7 +68,7 @@ def _new_tree(scene):
     tree = bpy.data.node_groups.new(NAME, "CompositorNodeTree")
     tree[MARK] = TREE
     tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    picture, output = nodes.picture_node(tree, scene), tree.nodes.new("NodeGroupOutput")
+    picture, output = nodes.new_image_node(tree, scene), tree.nodes.new("NodeGroupOutput")
     picture[MARK] = output[MARK] = "plain"
     output.location = (600, 0)
     _link_image(tree)
@@ -122,7 +122,7 @@ def _hand_over(tree):
             del node[MARK]
 
 
-def _is_anothers(tree, scene):
+def _belongs_to_other_scene(tree, scene):
     """Whether a tree that `scene` names is another scene's: of a copy the original's."""
     return any(
         other != scene and tree in (other.compositing_node_group, other.afterlight.own_tree)

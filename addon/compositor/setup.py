@@ -5,7 +5,7 @@ import bpy
 
 from ..host import engines, render_lock, roles
 from ..host.assign import assign
-from ..host.roles import HELPER, source
+from ..host.roles import HELPER, lit_scene
 from ..scene import needs, passes
 from ..translations import say
 from . import freestyle, layer_passes, muting, nodes, optional_nodes, own_tree, view_scenes
@@ -23,15 +23,15 @@ def connect(scene):
     _mirror_layers(scene, helper)
     for group in nodes.trees(scene.compositing_node_group):
         freestyle.unsplice(group, scene)
-    tree = own_tree.in_use(scene)
+    tree = own_tree.tree_to_use(scene)
     view_scenes.connect(scene, tree, helper)
     for group in nodes.trees(tree):
         if _is_unshared(group, scene):
             nodes.retarget(group, scene, old, helper)
     _offer_passes(helper)
-    for picture in nodes.pictures(tree, scene):
+    for picture in nodes.image_nodes(tree, scene):
         nodes.splice(picture.id_data, picture, helper)
-    nodes.request(tree, scene, helper)
+    nodes.request_render(tree, scene, helper)
     for group in nodes.trees(tree):
         if needs.glossy_light(scene):
             optional_nodes.splice_gloss(group, scene, helper)
@@ -60,7 +60,7 @@ def follow(scene):
     helper = scene.afterlight.helper
     if render_lock.is_locked() or helper is None:
         return  # deleted by hand: checks.py says so, with a button
-    if source(helper) != scene:
+    if lit_scene(helper) != scene:
         connect(scene)  # a copied scene: it still names the helper of its original
         return
     _mirror_layers(scene, helper)
@@ -143,7 +143,7 @@ def needs_rebuilding(scene):
     """Whether follow() would add or remove scenes or view layers, which crashes Blender where it evaluates
     something."""
     helper = scene.afterlight.helper
-    return helper is not None and (source(helper) != scene or len(helper.view_layers) > len(scene.view_layers))
+    return helper is not None and (lit_scene(helper) != scene or len(helper.view_layers) > len(scene.view_layers))
 
 
 def faults(scene):
@@ -152,7 +152,7 @@ def faults(scene):
     helper, tree = scene.afterlight.helper, scene.compositing_node_group
     if (
         helper is None
-        or source(helper) != scene
+        or lit_scene(helper) != scene
         or helper.render.engine != engines.LIGHT
         or roles.camera(helper) is None
     ):
@@ -161,7 +161,7 @@ def faults(scene):
         return {say("Compositing is switched off, so the light can't be added to the picture"): "REPAIR"}
     if [layer.name for layer in helper.view_layers] != [layer.name for layer in scene.view_layers]:
         return {say("View layers were added, removed or renamed since Indirect Light was ticked"): "REPAIR"}
-    pictures = nodes.pictures(tree, scene)
+    pictures = nodes.image_nodes(tree, scene)
     if not pictures:
         return {
             say(
@@ -186,7 +186,7 @@ def faults(scene):
             ): "RENDER_LAYERS"
         }
     found = {}
-    lost = [layer for group in nodes.trees(tree) for layer in nodes.lost_image(group, scene, helper)]
+    lost = [layer for group in nodes.trees(tree) for layer in nodes.layers_without_image(group, scene, helper)]
     if lost:  # where links went is known in our own tree only
         found[
             say(
@@ -195,9 +195,9 @@ def faults(scene):
                 ", ".join(lost),
             )
         ] = "REPAIR" if own_tree.is_ours(scene, tree) else ""
-    if any(nodes.without_picture(group, helper) for group in nodes.trees(tree)):
+    if any(nodes.adds_to_nothing(group, helper) for group in nodes.trees(tree)):
         found[say("The image is no longer linked to the node that adds the light to it")] = "REPAIR"
-    dark = sorted({picture.layer for picture in pictures if nodes.goes_dark(picture)})
+    dark = sorted({picture.layer for picture in pictures if nodes.lacks_light(picture)})
     if dark:
         found[
             say(
@@ -218,11 +218,11 @@ def faults(scene):
             )
         ] = ""
     elif any(
-        nodes.role(node) == "add" and nodes.shows_picture(node, scene) and not nodes.lights_way_in(node).links
+        nodes.role(node) == "add" and nodes.adds_to_image_of(node, scene) and not nodes.light_input(node).links
         for node in nodes.all_nodes(tree)
     ):
         found[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
-    if view_scenes.faults(scene):
+    if view_scenes.is_incomplete(scene):
         found[say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")] = (
             "REPAIR"
         )
@@ -233,7 +233,7 @@ def faults(scene):
     if any(freestyle.lacks(group, scene) for group in nodes.trees(tree)):
         found[say("The node that lays the Freestyle lines over the light was deleted")] = "REPAIR"
     if any(
-        mirror.use and not all(passes.is_on(layer, switch) for switch, _ in layer_passes.of_the_gather(scene, layer))
+        mirror.use and not all(passes.is_on(layer, switch) for switch, _ in layer_passes.for_gather(scene, layer))
         for layer, mirror in zip(scene.view_layers, helper.view_layers)
     ):
         found[say("A pass that Afterlight reads was switched off")] = "REPAIR"
@@ -242,7 +242,7 @@ def faults(scene):
 
 def add_picture(scene):
     """Add a Render Layers node of `scene` to the top level of its compositor, the user's own from then on."""
-    nodes.picture_node(scene.compositing_node_group, scene).location = (-400, 0)
+    nodes.new_image_node(scene.compositing_node_group, scene).location = (-400, 0)
     connect(scene)
 
 

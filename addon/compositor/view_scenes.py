@@ -22,10 +22,10 @@ from ..translations import say
 from ..views import placement
 from . import nodes
 
-SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
-MOST = needs.MOST_VIEWS
-FARTHEST = 1e9  # metres from the world's origin that a pose may be
-PLACED = "placed"  # custom property of the scout's scene
+PLACEMENT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
+MAX_VIEWS = needs.MAX_VIEWS
+MAX_DISTANCE = 1e9  # metres from the world's origin that a pose may be
+PLACEMENT_KEY = "placed"  # custom property of the scout's scene
 SAMPLES = 1  # EEVEE's; the pixels are averaged down afterwards
 
 # What of the lit scene decides how its surfaces look and where they are. EEVEE's own settings are mirrored all.
@@ -55,10 +55,10 @@ _LAYER = (
     "use_volumes",
     "use_grease_pencil",
 )
-_EEVEE_OWN = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
+_EEVEE_OVERRIDES = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
 
 
-def scout(scene):
+def placement_scene(scene):
     """The scene whose engine places the views of `scene`, or None."""
     return next((each for each in _own(scene) if each.afterlight.role == SCOUT), None)
 
@@ -118,7 +118,9 @@ def mirror(scene):
         for prop in scene.eevee.bl_rna.properties:
             if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
                 assign(
-                    each.eevee, prop.identifier, _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier))
+                    each.eevee,
+                    prop.identifier,
+                    _EEVEE_OVERRIDES.get(prop.identifier, getattr(scene.eevee, prop.identifier)),
                 )
         assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
         assign(each, "background_set", scene)
@@ -126,10 +128,12 @@ def mirror(scene):
             assign(own, switch, each.afterlight.role == VIEW and needs.glossy_light(scene))
 
 
-def faults(scene):
+def is_incomplete(scene):
     """Whether something of what connect() makes is missing."""
     ours = _own(scene)
-    if len(ours) != _held(scene) or any(each.camera is None or each.camera != roles.camera(each) for each in ours):
+    if len(ours) != _scene_count(scene) or any(
+        each.camera is None or each.camera != roles.camera(each) for each in ours
+    ):
         return True
     tree = scene.compositing_node_group
     found = [node.scene for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours] if tree else []
@@ -139,43 +143,43 @@ def faults(scene):
 def leave_all_out():
     """No view is rendered until the views' engine says so."""
     for each in bpy.data.scenes:
-        if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.source(each):
+        if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.lit_scene(each):
             assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
 
 
-def placed(scene):
+def stored_placement(scene):
     """The placement.Placement that the file holds for `scene`, or None where it holds none that makes sense."""
-    holder = scout(scene)
-    return _read_placed(holder.get(PLACED)) if holder else None
+    holder = placement_scene(scene)
+    return _checked_placement(holder.get(PLACEMENT_KEY)) if holder else None
 
 
-def keep_placed(scene, found):
+def store_placement(scene, found):
     """Store a placement in the file: the frames to come begin with it."""
-    scout(scene)[PLACED] = {
+    placement_scene(scene)[PLACEMENT_KEY] = {
         "poses": np.array(found.poses, float).ravel().tolist(),
         "coverage": list(found.coverage),
         "clearance": found.clearance,
     }
 
 
-def forget_placed(scene):
+def forget_placement(scene):
     """The next frame places the views anew."""
-    scout(scene).pop(PLACED, None)
+    placement_scene(scene).pop(PLACEMENT_KEY, None)
 
 
 def prepare(scene):
     """A frame's views are about to be chosen: none is in it as yet, and all look as `scene` does."""
     for view in scenes(scene):
-        drop(view)
+        leave_out(view)
     mirror(scene)
 
 
-def drop(view):
+def leave_out(view):
     """Leave a view scene out of this frame."""
     assign(view.view_layers[0], "use", False)
 
 
-def posed(scene):
+def rendered_views(scene):
     """The view scenes that are rendered in this frame, in their order."""
     tree = scene.compositing_node_group
     shown = [node.scene for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and not node.mute]
@@ -195,7 +199,7 @@ def unusable(thing):
     return ""
 
 
-def _read_placed(stored):
+def _checked_placement(stored):
     """placement.Placement of what a file holds, None where that is no placement: anybody may have written it."""
     try:
         poses = np.array(stored["poses"], float).reshape(-1, 4, 4)
@@ -204,11 +208,11 @@ def _read_placed(stored):
         return None
     turns = poses[:, :3, :3].clip(-2, 2)
     is_sound = (
-        len(poses) <= MOST
+        len(poses) <= MAX_VIEWS
         and len(coverage) == len(poses) + 1
         and (np.abs(coverage - 0.5) < 0.51).all()
-        and 0 < clearance < FARTHEST
-        and (np.abs(poses[:, :3, 3]) < FARTHEST).all()
+        and 0 < clearance < MAX_DISTANCE
+        and (np.abs(poses[:, :3, 3]) < MAX_DISTANCE).all()
         and np.allclose(turns @ turns.transpose(0, 2, 1), np.eye(3), atol=1e-3)
         and np.array_equal(poses[:, 3], np.tile((0.0, 0, 0, 1), (len(poses), 1)))
     )
@@ -220,11 +224,13 @@ def _own(scene):
     return [
         each.scene
         for each in scene.afterlight.view_scenes
-        if each.scene is not None and roles.source(each.scene) == scene and each.scene.afterlight.role in {SCOUT, VIEW}
+        if each.scene is not None
+        and roles.lit_scene(each.scene) == scene
+        and each.scene.afterlight.role in {SCOUT, VIEW}
     ]
 
 
-def _held(scene):
+def _scene_count(scene):
     """How many scenes `scene` needs: the scout, and one for each view."""
     views = needs.views(scene)
     return views + 1 if views else 0
@@ -233,7 +239,7 @@ def _held(scene):
 def _ensure_scenes(scene):
     """Make the scenes that are missing, and remove those that are not needed any more. Returns the scenes that `scene`
     names and that are not its own: those of which it is a copy."""
-    held, views = scene.afterlight.view_scenes, max(_held(scene) - 1, 0)
+    held, views = scene.afterlight.view_scenes, max(_scene_count(scene) - 1, 0)
     named = [each.scene for each in held if each.scene is not None]
     found = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
     strangers = set(named) - set(found[SCOUT]) - set(found[VIEW])
@@ -270,7 +276,7 @@ def _new(scene, role, index):
 
 
 def _name(scene, index):
-    return (VIEW_NAME.format(index, scene.name) if index else SCOUT_NAME.format(scene.name))[:250]
+    return (VIEW_NAME.format(index, scene.name) if index else PLACEMENT_NAME.format(scene.name))[:250]
 
 
 def _ensure_nodes(tree, ours):
@@ -280,5 +286,5 @@ def _ensure_nodes(tree, ours):
     for node in found:
         tree.nodes.remove(node)
     for index, each in enumerate(ours):
-        node = nodes.view_node(tree, each)
+        node = nodes.new_view_node(tree, each)
         node.location = (-700, -400 - 50 * index)

@@ -26,7 +26,7 @@ class Finding:
 def findings(scene):
     """Everything wrong with `scene`, what matters most first. Reads the scene, changes nothing."""
     if roles.is_helper(scene):
-        lit = roles.source(scene)
+        lit = roles.lit_scene(scene)
         if lit is None:
             return [
                 Finding(

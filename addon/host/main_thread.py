@@ -22,19 +22,19 @@ import bpy
 
 from .. import gather
 
-TURN = 0.02  # seconds of calls before the window has its turn
-GAP = 0.002  # seconds that a turn waits for the next call
-RENDERING, IDLE = 0.0, 0.1  # seconds until the next look: while something renders, and else
-PATIENCE = 0.05  # seconds that a call waits before it asks whether it is still wanted
-SURELY = 0.5  # seconds that one waits which must be made
+TURN_SECONDS = 0.02  # seconds of calls before the window has its turn
+NEXT_CALL_WAIT = 0.002  # seconds that a turn waits for the next call
+RENDER_INTERVAL, IDLE_INTERVAL = 0.0, 0.1  # seconds until the next look: while something renders, and else
+CALL_POLL_INTERVAL = 0.05  # seconds that a call waits before it asks whether it is still wanted
+MUST_RUN_TIMEOUT = 0.5  # seconds that one waits which must be made
 
 _calls = queue.SimpleQueue()  # (Future, call)
-_open = False  # whether anybody makes the calls; global like the queue, since the main thread is one
+_takes_calls = False  # whether anybody makes the calls; global like the queue, since the main thread is one
 _stopped = ContextVar("stopped", default=lambda: False)  # of the render whose thread this is
 
 
 @contextmanager
-def until(stopped):
+def cancel_when(stopped):
     """What waits for its turn within gives up as soon as stopped() is true."""
     before = _stopped.set(stopped)
     try:
@@ -50,24 +50,24 @@ def run(call):
         return call()
     if _stopped.get()():
         raise gather.Cancelled
-    future = _leave(call)
+    future = _enqueue(call)
     while not future.done():
         try:
-            future.exception(timeout=PATIENCE)
+            future.exception(timeout=CALL_POLL_INTERVAL)
         except TimeoutError:
-            if (_stopped.get()() or not _open) and future.cancel():
+            if (_stopped.get()() or not _takes_calls) and future.cancel():
                 raise gather.Cancelled from None
     return future.result()
 
 
-def surely(call):
+def must_run(call):
     """As run(), for what must be put back though the render is to stop: made here where the main thread does not come
     round to it, since it waits for the end of the render."""
     if _is_main():
         return call()
-    future = _leave(call)
+    future = _enqueue(call)
     try:
-        return future.result(timeout=SURELY)
+        return future.result(timeout=MUST_RUN_TIMEOUT)
     except TimeoutError:
         return call() if future.cancel() else future.result()
 
@@ -77,7 +77,7 @@ def later(call):
     if _is_main():
         call()
     else:
-        _leave(call)
+        _enqueue(call)
 
 
 def after_render(call):
@@ -85,10 +85,10 @@ def after_render(call):
     if bpy.app.background or not bpy.app.is_job_running("RENDER"):
         call()
     else:
-        bpy.app.timers.register(lambda: IDLE if bpy.app.is_job_running("RENDER") else call(), persistent=True)
+        bpy.app.timers.register(lambda: IDLE_INTERVAL if bpy.app.is_job_running("RENDER") else call(), persistent=True)
 
 
-def _leave(call):
+def _enqueue(call):
     """The Future of a call that the main thread is to make."""
     future = Future()
     _calls.put((future, call))
@@ -99,24 +99,24 @@ def _is_main():
     return threading.current_thread() is threading.main_thread()
 
 
-def _take():
+def _make_calls():
     """Make calls for a moment; Blender asks again when it has looked after its window."""
-    end, wait = time.perf_counter() + TURN, 0.0
+    end, wait = time.perf_counter() + TURN_SECONDS, 0.0
     while (left := end - time.perf_counter()) > 0:
         try:
             future, call = _calls.get(timeout=min(left, wait))
         except queue.Empty:
             break
-        _make(future, call)
-        wait = GAP
+        _make_call(future, call)
+        wait = NEXT_CALL_WAIT
     if wait:
         gather.device.settle()
     if bpy.app.is_job_running("RENDER"):
-        return RENDERING
-    return IDLE if _open else None
+        return RENDER_INTERVAL
+    return IDLE_INTERVAL if _takes_calls else None
 
 
-def _make(future, call):
+def _make_call(future, call):
     if future.set_running_or_notify_cancel():
         try:
             future.set_result(call())
@@ -125,14 +125,14 @@ def _make(future, call):
 
 
 def register():
-    global _open
+    global _takes_calls
     if not bpy.app.background:
-        _open = True
+        _takes_calls = True
         gather.device.place = sys.modules[__name__]
-        bpy.app.timers.register(_take, persistent=True)
+        bpy.app.timers.register(_make_calls, persistent=True)
 
 
 def unregister():
     """A render that is under way is not lit any more, and what it leaves behind is still freed."""
-    global _open
-    _open = False
+    global _takes_calls
+    _takes_calls = False

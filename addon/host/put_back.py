@@ -7,7 +7,7 @@ videos. No order of names is right for all of them, so what differs is set again
 
 import bpy
 
-ROUNDS = 5
+MAX_ROUNDS = 5
 
 
 def record(*structs, leave=()):
@@ -28,7 +28,7 @@ def record(*structs, leave=()):
 
 def restore(recorded):
     """Put back what differs from [(owner, name, value)]. What Blender no longer allows stays as it is."""
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         differing = [(owner, name, value) for owner, name, value in recorded if current(owner, name) != value]
         if not differing:
             break

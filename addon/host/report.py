@@ -46,18 +46,18 @@ class Reporter:
     """What our render engines have in common: they remember what they have to say, and report what is news."""
 
     @contextmanager
-    def failures_of(self, scene, tell=None):
+    def failures_of(self, scene, print_line=None):
         """Whatever fails within becomes a message about `scene`, by _fail() or another way to tell."""
-        tell = tell or self._fail
+        print_line = print_line or self._fail
         try:
             yield
         except gather.Cancelled:
             pass
         except (Problem, gather.GpuUnavailable) as problem:
-            tell(scene, say(*problem.args))
+            print_line(scene, say(*problem.args))
         except Exception as error:  # a bug of ours must not cost a picture, nor pass for success on a farm
-            tell_traceback()
-            tell(
+            print_traceback()
+            print_line(
                 scene,
                 say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
             )
@@ -73,7 +73,7 @@ class Reporter:
 
 def begin(scene):
     """Forget the messages of the render before."""
-    found = _of(scene)
+    found = _report_of(scene)
     found.message, found.warnings = "", []
 
 
@@ -83,71 +83,71 @@ def fail(scene, text):
     _failed = True
     if message(scene) == text:
         return False
-    _of(scene).message = text
+    _report_of(scene).message = text
     pop_up(text, say("Afterlight: the picture has no indirect light"))
     return True
 
 
 def warn(scene, text):
     """Remember what the last render of `scene` had to do without, though it was lit. Returns whether that is news."""
-    known = _of(scene).warnings
+    known = _report_of(scene).warnings
     if text in known:
         return False
     known.append(text)
     return True
 
 
-def covered(scene, shares, seconds):
+def keep_coverage(scene, shares, seconds):
     """Keep what the last placement of views gave: the share of the light that the main view sees, and with each
     view."""
-    _of(scene).coverage = shares, seconds
+    _report_of(scene).coverage = shares, seconds
 
 
-def timed(scene, stages):
+def keep_stages(scene, stages):
     """Keep the seconds that each stage of the last render took, in order."""
-    _of(scene).stages = stages
+    _report_of(scene).stages = stages
 
 
-def took(scene, memory):
+def keep_memory(scene, memory):
     """Keep the bytes that the last render took at most, by the name of what they are."""
-    _of(scene).memory = memory
+    _report_of(scene).memory = memory
 
 
 def message(scene):
     """Why the last render of `scene` was not lit; an empty string where it was."""
-    return _of(scene).message
+    return _report_of(scene).message
 
 
 def warnings(scene):
     """What warn() has been told since the last render began."""
-    return _of(scene).warnings
+    return _report_of(scene).warnings
 
 
 def coverage(scene):
     """(shares, seconds) as covered() was told, or None."""
-    return _of(scene).coverage
+    return _report_of(scene).coverage
 
 
 def stages(scene):
     """Seconds by stage of the last render of `scene`; empty where there was none."""
-    return _of(scene).stages
+    return _report_of(scene).stages
 
 
 def memory(scene):
     """Bytes by name of the last render of `scene`; empty where there was none."""
-    return _of(scene).memory
+    return _report_of(scene).memory
 
 
-def _of(scene):
+def _report_of(scene):
     return _reports.setdefault(scene.session_uid, _Report())
 
 
-def in_words(name):
+def label(name):
     """The name of a stage or of what memory is for, as a label has it."""
     return name[:1].upper() + name[1:].replace("_", " ")
 
 
-def tell(text, stream=None):
+def print_line(text, stream=None):
     """Print a line on the terminal, or to another stream: with escapes for what its encoding lacks, and nowhere if it
     is gone."""
     stream = stream or sys.stdout
@@ -156,9 +156,9 @@ def tell(text, stream=None):
         print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream)
 
 
-def tell_traceback():
+def print_traceback():
     """Print the error that is being handled, which is a bug of ours."""
-    tell(traceback.format_exc(), sys.stderr)
+    print_line(traceback.format_exc(), sys.stderr)
 
 
 def pop_up(text, title):
@@ -182,7 +182,7 @@ def _exit_code():
     """
     if not _failed:
         return
-    tell("Afterlight: exit code 1, because a render was not lit", sys.stderr)
+    print_line("Afterlight: exit code 1, because a render was not lit", sys.stderr)
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()
@@ -190,7 +190,7 @@ def _exit_code():
         ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
     except OSError:
         pass
-    temp_files.leave()
+    temp_files.release_at_exit()
     os._exit(1)
 
 

@@ -10,7 +10,7 @@ they are.
 import bpy
 
 HELPER, SCOUT, VIEW = "HELPER", "SCOUT", "VIEW"
-SIDE = 4  # pixels along a side of the frame of our scenes: they are rendered at the lit scene's
+FRAME_SIDE = 4  # pixels along a side of the frame of our scenes: they are rendered at the lit scene's
 MARK = "afterlight"  # custom property of our nodes, trees and cameras, and of the scenes of 0.1.0 to 0.3.0
 
 _seen = set()  # session_uids of scenes that were ours at some moment of this session
@@ -21,7 +21,7 @@ def is_helper(scene):
     return bool(scene.afterlight.role)
 
 
-def source(scene):
+def lit_scene(scene):
     """The scene that `scene` helps to light if it is ours, else None."""
     lit = scene.afterlight.serves
     if lit is None or not is_helper(scene) or not _has_our_size(scene):
@@ -41,7 +41,7 @@ def recorded(lit):
 def own(lit, role):
     """Our scenes that serve `lit` in a role, those first that it names."""
     named = recorded(lit)
-    found = [scene for scene in bpy.data.scenes if scene.afterlight.role == role and source(scene) == lit]
+    found = [scene for scene in bpy.data.scenes if scene.afterlight.role == role and lit_scene(scene) == lit]
     return sorted(found, key=lambda scene: named.index(scene) if scene in named else len(named))
 
 
@@ -51,7 +51,7 @@ def new(lit, role, name, engine):
     scene.afterlight.role, scene.afterlight.serves = role, lit
     _seen.add(scene.session_uid)
     scene.render.engine = engine
-    scene.render.resolution_x = scene.render.resolution_y = SIDE
+    scene.render.resolution_x = scene.render.resolution_y = FRAME_SIDE
     return scene
 
 
@@ -119,7 +119,7 @@ def adopt(lit):
 
 
 def _has_our_size(scene):
-    return scene.render.resolution_x == scene.render.resolution_y == SIDE
+    return scene.render.resolution_x == scene.render.resolution_y == FRAME_SIDE
 
 
 def _is_our_camera(thing):

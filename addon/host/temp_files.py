@@ -24,11 +24,11 @@ try:
 except ImportError:
     import msvcrt  # Windows
 
-PREFIX = "afterlight_"  # of our folders
-SESSION = "blender_"  # of the folders that Blender makes for its sessions
-FILE = re.compile(r"passes_\d+\.exr")  # the names of our files
-LOCK = ".lock"  # one in each of our folders
-LONGEST = 0.005  # seconds that looking may take: folders that are left then wait for another start
+FOLDER_PREFIX = "afterlight_"  # of our folders
+SESSION_PREFIX = "blender_"  # of the folders that Blender makes for its sessions
+FILE_NAME = re.compile(r"passes_\d+\.exr")  # the names of our files
+LOCK_NAME = ".lock"  # one in each of our folders
+MAX_SEARCH_SECONDS = 0.005  # seconds that looking may take: folders that are left then wait for another start
 
 # Whether folders are worked in by their descriptors, so that nobody can put others in their places meanwhile.
 BY_DESCRIPTOR = {os.open, os.stat, os.unlink, os.rmdir} <= os.supports_dir_fd and os.listdir in os.supports_fd
@@ -48,12 +48,12 @@ def new(number):
 def remove(path):
     """Remove a file whose path new() gave; no error where it is gone."""
     folder, name = os.path.split(path)
-    if FILE.fullmatch(name) and any(each.path == folder for each in _folders):
+    if FILE_NAME.fullmatch(name) and any(each.path == folder for each in _folders):
         with suppress(OSError):
             os.unlink(path)
 
 
-def check(path):
+def check_regular(path):
     """Raises OSError where there is no regular file at `path`: to read a pipe would wait for ever."""
     if not _is_plain(os.lstat(path), stat.S_ISREG):
         raise OSError("it is no regular file")
@@ -65,25 +65,25 @@ def release():
         _folders.pop().remove()
 
 
-def leave():
+def release_at_exit():
     """As release(), where the process ends without Blender's own clearing up: its folder goes too if it is empty."""
     release()
     session = os.path.normpath(bpy.app.tempdir)
-    if os.path.basename(session).startswith(SESSION):
+    if os.path.basename(session).startswith(SESSION_PREFIX):
         with suppress(OSError):
             os.rmdir(session)
 
 
 def clear():
     """Remove what killed Blenders of this user left among the temporary files: never what belongs to one that runs."""
-    end = time.perf_counter() + LONGEST
+    end = time.perf_counter() + MAX_SEARCH_SECONDS
     with suppress(OSError), _Folder(_base()) as base:
-        names = [name for name in base.names() if name.startswith((PREFIX, SESSION))]
+        names = [name for name in base.names() if name.startswith((FOLDER_PREFIX, SESSION_PREFIX))]
         first = random.randrange(len(names) + 1)  # so that every folder has its turn
         for name in names[first:] + names[:first]:
             if time.perf_counter() > end:
                 break
-            (_clear if name.startswith(PREFIX) else _clear_session)(base, name)
+            (_remove_abandoned if name.startswith(FOLDER_PREFIX) else _clean_session)(base, name)
 
 
 class _Folder:
@@ -128,17 +128,17 @@ class _Folder:
     def remove_files(self):
         """Remove our files, and nothing else that may be there."""
         for name in self.names():
-            if FILE.fullmatch(name) and self.is_file(name):
+            if FILE_NAME.fullmatch(name) and self.is_file(name):
                 self.call(os.unlink, name)
 
 
-class _Own:
+class _OwnFolder:
     """A folder of this process. path: its own. under: Blender's temporary folder at that time."""
 
     def __init__(self):
         self.under = bpy.app.tempdir
         os.makedirs(self.under, mode=0o700, exist_ok=True)  # a cleaner of the system's may have removed it
-        self.path = tempfile.mkdtemp(prefix=PREFIX, dir=self.under)
+        self.path = tempfile.mkdtemp(prefix=FOLDER_PREFIX, dir=self.under)
         self._made = os.lstat(self.path)
         self._lock = _new_lock(self.path)
 
@@ -164,7 +164,7 @@ class _Own:
                     return
                 folder.remove_files()
                 with suppress(FileNotFoundError):
-                    folder.call(os.unlink, LOCK)
+                    folder.call(os.unlink, LOCK_NAME)
             within.call(os.rmdir, name)
 
 
@@ -172,35 +172,35 @@ def _folder():
     """The _Own to write to, made where there is none. Raises OSError."""
     if not _folders or not _folders[-1].is_current():
         _folders[:] = [each for each in _folders if each.stands() or each.remove()]  # others hold files that are in use
-        _folders.append(_Own())
+        _folders.append(_OwnFolder())
     return _folders[-1]
 
 
 def _base():
     """The folder of everybody's temporary files, in which Blender makes one for the session where it can."""
     folder = os.path.normpath(bpy.app.tempdir)
-    return os.path.dirname(folder) if os.path.basename(folder).startswith(SESSION) else folder
+    return os.path.dirname(folder) if os.path.basename(folder).startswith(SESSION_PREFIX) else folder
 
 
-def _clear_session(base, name):
+def _clean_session(base, name):
     with suppress(OSError):
         with _Folder(name, base) as session:
-            cleared = [_clear(session, each) for each in session.names() if each.startswith(PREFIX)]
+            cleared = [_remove_abandoned(session, each) for each in session.names() if each.startswith(FOLDER_PREFIX)]
         if any(cleared):
             base.call(os.rmdir, name)
 
 
-def _clear(within, name):
+def _remove_abandoned(within, name):
     """Remove a folder of ours where nobody holds its lock. Returns whether it is gone."""
     try:
         with _Folder(name, within) as folder:
             lock = _open_lock(folder)
             try:
-                _take(lock)
+                _acquire(lock)
                 folder.remove_files()
             finally:
                 os.close(lock)
-            folder.call(os.unlink, LOCK)
+            folder.call(os.unlink, LOCK_NAME)
         within.call(os.rmdir, name)
         return True
     except OSError:  # no lock, a lock that is held, another user's folder, or other files in it
@@ -210,12 +210,12 @@ def _clear(within, name):
 def _new_lock(path):
     """The descriptor of a new lock that is held, or None where the file system has no locks: nobody clears a folder
     without the file."""
-    made = os.path.join(path, LOCK if os.name == "nt" else f"{LOCK}.new")
+    made = os.path.join(path, LOCK_NAME if os.name == "nt" else f"{LOCK_NAME}.new")
     lock = os.open(made, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
     try:
-        _take(lock)
+        _acquire(lock)
         if os.name != "nt":  # which renames no open files
-            os.rename(made, os.path.join(path, LOCK))  # only now may others try it
+            os.rename(made, os.path.join(path, LOCK_NAME))  # only now may others try it
         return lock
     except OSError:
         os.close(lock)
@@ -225,16 +225,16 @@ def _new_lock(path):
 
 
 def _open_lock(folder):
-    if not folder.is_file(LOCK):
+    if not folder.is_file(LOCK_NAME):
         raise OSError("it is no regular file")
-    lock = folder.call(os.open, LOCK, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+    lock = folder.call(os.open, LOCK_NAME, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     if not stat.S_ISREG(os.fstat(lock).st_mode):  # changed since
         os.close(lock)
         raise OSError("it is no regular file")
     return lock
 
 
-def _take(lock):
+def _acquire(lock):
     """The lock of an open file, at once. Raises OSError where another holds it, in this process or elsewhere."""
     if os.name == "nt":
         msvcrt.locking(lock, msvcrt.LK_NBLCK, 1)

@@ -52,5 +52,5 @@ class ViewReuse:
     def _is_moving(self, scene, depsgraph):
         """Asked once in a render: whatever changes within it is of a kind that moving() finds."""
         if scene.session_uid not in self._moving:
-            self._moving[scene.session_uid] = bool(animation.moving(scene, depsgraph))
+            self._moving[scene.session_uid] = bool(animation.find_motion(scene, depsgraph))
         return self._moving[scene.session_uid]

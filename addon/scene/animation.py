@@ -9,7 +9,7 @@ camera.
 
 import bpy
 
-KINDS = {
+STILL_ID_TYPES = {
     "ACTION",
     "ARMATURE",
     "CAMERA",
@@ -34,7 +34,7 @@ KINDS = {
     "VOLUME",
     "WORLD",
 }
-MODIFIERS = {
+STILL_MODIFIERS = {
     "ARMATURE",
     "ARRAY",
     "BEVEL",
@@ -95,7 +95,7 @@ HANDLERS = (
 )
 
 
-def moving(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
+def find_motion(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
     """The name of something that may look otherwise in another frame of `scene`; empty where there is nothing.
 
     depsgraph: one in which all that is looked at is evaluated."""
@@ -107,7 +107,7 @@ def moving(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
         return scene.name
     animated = set()
     for each in depsgraph.ids:
-        if each.id_type not in KINDS or _is_timed(each):
+        if each.id_type not in STILL_ID_TYPES or _is_timed(each):
             return each.name
         if _is_animated(each):
             animated.add(each.original)
@@ -126,7 +126,7 @@ def _is_timed(thing):
     """Whether an ID changes with time, or with the camera, of itself."""
     if thing.id_type == "OBJECT":
         return (
-            any(each.type not in MODIFIERS for each in thing.modifiers)
+            any(each.type not in STILL_MODIFIERS for each in thing.modifiers)
             or any(each.type in TIMED_CONSTRAINTS for each in thing.constraints)
             and thing.type != "CAMERA"
             or thing.rigid_body is not None

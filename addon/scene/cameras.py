@@ -46,7 +46,13 @@ def camera(
     aspect = scene.render.pixel_aspect_x, scene.render.pixel_aspect_y
     layer = scene.view_layers[layer] if layer else first_layer(scene)
     return camera_at(
-        evaluated.matrix_world, evaluated, depsgraph, (x, y), full, aspect, pixel_jitter.middle(scene, layer)
+        evaluated.matrix_world,
+        evaluated,
+        depsgraph,
+        (x, y),
+        full,
+        aspect,
+        pixel_jitter.depth_sample_offset(scene, layer),
     )
 
 

@@ -60,7 +60,7 @@ def _channels(path):
             one_line(error),
         ) from error
     try:
-        temp_files.check(path)
+        temp_files.check_regular(path)
         channels = _mapped(path, OpenEXR.File(path, separate_channels=True, header_only=True).header())
         if channels is None:
             parts = OpenEXR.File(path, separate_channels=True).parts

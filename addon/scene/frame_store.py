@@ -47,7 +47,7 @@ def save(scene: bpy.types.Scene) -> str:
             ) from error
         raise _not_written(one_line(error)) from error
     finally:
-        main_thread.surely(lambda: put_back.restore(settings))
+        main_thread.must_run(lambda: put_back.restore(settings))
     if not os.path.exists(path):
         raise _not_written("there is no file")
     return path

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..gather import images
 
-UNKNOWN = 0.5  # albedo where a texture or a group of nodes decides
+UNKNOWN_ALBEDO = 0.5  # albedo where a texture or a group of nodes decides
 # Nodes with a socket "Roughness" that is that of a reflection.
-GLOSSY = {
+GLOSSY_NODES = {
     "ShaderNodeBsdfPrincipled",
     "ShaderNodeBsdfAnisotropic",
     "ShaderNodeBsdfGlossy",
@@ -19,12 +19,12 @@ GLOSSY = {
     "ShaderNodeEeveeSpecular",
 }
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709, as Blender makes a number of a colour
-SAMPLED = 512  # means along a side of a texture that are looked at
-DEEPEST = 8  # shader nodes behind one another that are looked through
+MAX_TEXTURE_SIDE = 512  # means along a side of a texture that are looked at
+MAX_SHADER_DEPTH = 8  # shader nodes behind one another that are looked through
 
 
 @dataclass(frozen=True)
-class Look:
+class MaterialSummary:
     """albedo, emission: means over the colours. passes_light: whether EEVEE sees through it."""
 
     albedo: float = 0.8
@@ -32,35 +32,35 @@ class Look:
     passes_light: bool = False
 
 
-def look(material: bpy.types.Material | None) -> Look:
+def summarize(material: bpy.types.Material | None) -> MaterialSummary:
     """Look of a material, or of None as Blender shows it."""
     if material is None:
-        return Look()
+        return MaterialSummary()
     output = material.node_tree.get_output_node("EEVEE") if material.node_tree else None
     if output is None:
-        return Look(sum(material.diffuse_color[:3]) / 3)
-    shader = _linked(output.inputs["Surface"])
+        return MaterialSummary(sum(material.diffuse_color[:3]) / 3)
+    shader = _linked_node(output.inputs["Surface"])
     if shader is None:  # nothing, or a volume only
-        return Look(0.0, 0.0, passes_light=True)
-    albedo, emission, alpha = _shader(shader, DEEPEST)
-    return Look(albedo, emission, alpha < 0.5)
+        return MaterialSummary(0.0, 0.0, passes_light=True)
+    albedo, emission, alpha = _shader(shader, MAX_SHADER_DEPTH)
+    return MaterialSummary(albedo, emission, alpha < 0.5)
 
 
-def sky(world: bpy.types.World | None) -> float:
+def mean_radiance(world: bpy.types.World | None) -> float:
     """Mean radiance of a world, roughly."""
-    node = _shines(world) if world else None
+    node = _world_shader(world) if world else None
     if node is None:
         return sum(world.color) / 3 if world and not world.node_tree else 0.0
     value = _values(node)
-    return value("Color", UNKNOWN) * value("Strength", 1.0)
+    return value("Color", UNKNOWN_ALBEDO) * value("Strength", 1.0)
 
 
 def roughness(material: bpy.types.Material, otherwise: float) -> float:
     """Roughness of a material's gloss, 0 to 1; of several, the mean by how much each has in a mixture. Textures count
     as the mean of their picture. otherwise: where it can't be told, or nothing is glossy."""
     output = material.node_tree.get_output_node("EEVEE") if material.node_tree else None
-    shader = _behind(output.inputs["Surface"]) if output else None
-    total, share = _rough(shader.node, otherwise, DEEPEST) if shader else (0.0, 0.0)
+    shader = _linked_socket(output.inputs["Surface"]) if output else None
+    total, share = _shader_roughness(shader.node, otherwise, MAX_SHADER_DEPTH) if shader else (0.0, 0.0)
     return min(max(total / share, 0.0), 1.0) if share > 0 else otherwise
 
 
@@ -74,26 +74,26 @@ class Sky:
     to_world: np.ndarray = field(default_factory=lambda: np.eye(3))
 
 
-def sky_of(world: bpy.types.World) -> Sky | None:
+def world_sky(world: bpy.types.World) -> Sky | None:
     """Sky of a world; None where nodes decide it that are not read here."""
     if not world.node_tree:
         return Sky(np.array(world.color))
-    node = _shines(world)
+    node = _world_shader(world)
     if node is None:
         return Sky(np.zeros(3))
     if node.bl_idname != "ShaderNodeBackground" or node.inputs["Strength"].is_linked:
         return None
     strength, color = node.inputs["Strength"].default_value, node.inputs["Color"]
-    texture = _linked(color)
+    texture = _linked_node(color)
     if texture is None:
         return Sky(strength * np.array(color.default_value[:3]))
-    to_world = _turn(texture)
+    to_world = _rotation(texture)
     if to_world is None or color.links[0].from_socket.name != "Color":
         return None
     return Sky(np.full(3, strength), texture.image, to_world)
 
 
-def _turn(node):
+def _rotation(node):
     """(3, 3), from the directions of an environment texture's picture to the world's; None where it is no such
     texture, or is laid out by anything but a turn."""
     if (
@@ -104,7 +104,7 @@ def _turn(node):
     ):
         return None
     vector, turn = node.inputs["Vector"], np.eye(3)
-    mapping = _linked(vector)
+    mapping = _linked_node(vector)
     if mapping is not None and mapping.bl_idname == "ShaderNodeMapping":
         location, rotation, scale = (mapping.inputs[name] for name in ("Location", "Rotation", "Scale"))
         if (
@@ -124,10 +124,10 @@ def _turn(node):
     return turn if from_socket.node.bl_idname == "ShaderNodeTexCoord" and from_socket.name == "Generated" else None
 
 
-def _shines(world):
+def _world_shader(world):
     """The node that decides what a world sends, or None."""
     output = world.node_tree.get_output_node("EEVEE") if world.node_tree else None
-    return _linked(output.inputs["Surface"]) if output else None
+    return _linked_node(output.inputs["Surface"]) if output else None
 
 
 def _shader(node, depth):
@@ -137,10 +137,12 @@ def _shader(node, depth):
     value = _values(node)
     kind = node.bl_idname
     if kind == "ShaderNodeBsdfPrincipled":
-        diffuse = value("Base Color", UNKNOWN) * (1 - value("Metallic", 0.0)) * (1 - value("Transmission Weight", 0.0))
-        return diffuse, value("Emission Color", UNKNOWN) * value("Emission Strength", 1.0), value("Alpha", 1.0)
+        diffuse = (
+            value("Base Color", UNKNOWN_ALBEDO) * (1 - value("Metallic", 0.0)) * (1 - value("Transmission Weight", 0.0))
+        )
+        return diffuse, value("Emission Color", UNKNOWN_ALBEDO) * value("Emission Strength", 1.0), value("Alpha", 1.0)
     if kind == "ShaderNodeEmission":
-        return 0.0, value("Color", UNKNOWN) * value("Strength", 1.0), 1.0
+        return 0.0, value("Color", UNKNOWN_ALBEDO) * value("Strength", 1.0), 1.0
     if kind in {"ShaderNodeBsdfTransparent", "ShaderNodeHoldout"}:
         return 0.0, 0.0, 0.0
     if kind in {
@@ -151,44 +153,44 @@ def _shader(node, depth):
     }:
         return 0.0, 0.0, 1.0
     if kind in {"ShaderNodeMixShader", "ShaderNodeAddShader"} and depth:
-        shaders = [_shader(_linked(socket), depth - 1) for socket in node.inputs if socket.type == "SHADER"]
-        share = value("Fac", UNKNOWN) if kind == "ShaderNodeMixShader" else None
+        shaders = [_shader(_linked_node(socket), depth - 1) for socket in node.inputs if socket.type == "SHADER"]
+        share = value("Fac", UNKNOWN_ALBEDO) if kind == "ShaderNodeMixShader" else None
         first, second = shaders
         if share is None:
             return first[0] + second[0], first[1] + second[1], min(first[2], second[2])
         return tuple((1 - share) * a + share * b for a, b in zip(first, second))
-    return value("Color", UNKNOWN), 0.0, 1.0
+    return value("Color", UNKNOWN_ALBEDO), 0.0, 1.0
 
 
-def _rough(node, otherwise, depth):
+def _shader_roughness(node, otherwise, depth):
     """(roughness times share, share) of the gloss of a shader."""
     if node.bl_idname in {"ShaderNodeMixShader", "ShaderNodeAddShader"} and depth:
-        shaders = [_behind(socket) for socket in node.inputs if socket.type == "SHADER"]
-        found = [_rough(each.node, otherwise, depth - 1) if each else (0.0, 0.0) for each in shaders]
-        first = 1 - _values(node)("Fac", UNKNOWN) if node.bl_idname == "ShaderNodeMixShader" else 0.5
+        shaders = [_linked_socket(socket) for socket in node.inputs if socket.type == "SHADER"]
+        found = [_shader_roughness(each.node, otherwise, depth - 1) if each else (0.0, 0.0) for each in shaders]
+        first = 1 - _values(node)("Fac", UNKNOWN_ALBEDO) if node.bl_idname == "ShaderNodeMixShader" else 0.5
         return tuple(first * a + (1 - first) * b for a, b in zip(*found))
-    if node.bl_idname not in GLOSSY:
+    if node.bl_idname not in GLOSSY_NODES:
         return 0.0, 0.0
     socket = node.inputs["Roughness"]
-    source = _behind(socket)
+    source = _linked_socket(socket)
     if source is None:
         return (otherwise if socket.links else socket.default_value), 1.0
     if source.node.bl_idname == "ShaderNodeValue":
         return source.default_value, 1.0
-    mean = _mean(source.node.image, source.name) if source.node.bl_idname == "ShaderNodeTexImage" else None
+    mean = _image_mean(source.node.image, source.name) if source.node.bl_idname == "ShaderNodeTexImage" else None
     return (otherwise if mean is None else mean), 1.0
 
 
-def _mean(image, channel):
+def _image_mean(image, channel):
     """Mean of the number that an image texture's socket "Color" or "Alpha" gives where a single one is wanted; None
     without pixels."""
-    found = images.means(image, SAMPLED, SAMPLED) if image else None
+    found = images.means(image, MAX_TEXTURE_SIDE, MAX_TEXTURE_SIDE) if image else None
     if found is None:
         return None
     return float((found[..., 3] if channel == "Alpha" else found[..., :3] @ LUMINANCE).mean())
 
 
-def _behind(socket):
+def _linked_socket(socket):
     """The socket that a socket is linked to, behind reroutes and muted nodes' own links; None where there is none."""
     while socket.links:
         socket = socket.links[0].from_socket
@@ -198,7 +200,7 @@ def _behind(socket):
     return None
 
 
-def _linked(socket):
+def _linked_node(socket):
     return socket.links[0].from_node if socket.links else None
 
 

@@ -15,7 +15,7 @@ def present(scene: bpy.types.Scene) -> bool:
     if any(_has_volume(world.node_tree) for world in worlds):
         return True
     overrides = {layer.material_override for layer in scene.view_layers} - {None}
-    found = {material for material in bpy.data.materials if _lets_through(material)}
+    found = {material for material in bpy.data.materials if _transmits(material)}
     if found & overrides:
         return True
     if not found and not bpy.data.volumes and not bpy.data.grease_pencils:
@@ -32,12 +32,14 @@ def present(scene: bpy.types.Scene) -> bool:
     return any(
         thing.type in {"VOLUME", "GREASEPENCIL"}
         or any(slot.material in found for slot in thing.material_slots)
-        or any(modifier.type == "NODES" and (by_nodes or _takes(modifier, found)) for modifier in thing.modifiers)
+        or any(
+            modifier.type == "NODES" and (by_nodes or _uses_material(modifier, found)) for modifier in thing.modifiers
+        )
         for thing in _objects(scene)
     )
 
 
-def _lets_through(material):
+def _transmits(material):
     return material.surface_render_method == "BLENDED" or _has_volume(material.node_tree)
 
 
@@ -47,7 +49,7 @@ def _has_volume(tree):
     return output is not None and output.inputs["Volume"].is_linked
 
 
-def _takes(modifier, materials):
+def _uses_material(modifier, materials):
     """Whether a Geometry Nodes modifier has one of the materials among its inputs."""
     return any(modifier[key] in materials for key in modifier.keys() if isinstance(modifier[key], bpy.types.Material))
 

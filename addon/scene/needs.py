@@ -4,7 +4,7 @@
 import bpy
 
 METHOD_OF_ONE_VIEW = "PAPER"
-MOST_VIEWS = 9  # beside the main one
+MAX_VIEWS = 9  # beside the main one
 
 
 def has_views(settings) -> bool:
@@ -17,7 +17,7 @@ def views(scene: bpy.types.Scene) -> int:
     settings = scene.afterlight
     if not settings.enabled or settings.views == "CAMERA" or not has_views(settings):
         return 0
-    return settings.view_count if settings.views == "AUTOMATIC" else min(len(settings.view_cameras), MOST_VIEWS)
+    return settings.view_count if settings.views == "AUTOMATIC" else min(len(settings.view_cameras), MAX_VIEWS)
 
 
 def averages_frames(settings) -> bool:

@@ -31,7 +31,7 @@ def is_on(layer: bpy.types.ViewLayer, switch: str) -> bool:
     return layer.path_resolve(switch)
 
 
-def turn(layer: bpy.types.ViewLayer, switch: str, on: bool) -> None:
+def set_enabled(layer: bpy.types.ViewLayer, switch: str, on: bool) -> None:
     """Let a view layer render a pass, or not. switch: as is_on() has it."""
     owner, _, name = switch.rpartition(".")
     setattr(layer.path_resolve(owner) if owner else layer, name, on)

@@ -12,19 +12,19 @@ import math
 
 import bpy
 
-NO_FILTER = 0.01  # pixels: a smaller filter is none
-DISK_FILTER = math.sqrt(0.5)  # below this radius EEVEE's samples fill a disk, above it the pixel
-DISK = 0.5  # its radius, as a share of the filter's
-SPARSE_FILTER = 2.2  # above this radius EEVEE draws the pixels around at random, and which is kept isn't known
+MIN_FILTER = 0.01  # pixels: a smaller filter is none
+MAX_DISK_FILTER = math.sqrt(0.5)  # below this radius EEVEE's samples fill a disk, above it the pixel
+DISK_RADIUS = 0.5  # its radius, as a share of the filter's
+MIN_SPARSE_FILTER = 2.2  # above this radius EEVEE draws the pixels around at random, and which is kept isn't known
 
 
-def middle(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> tuple[float, float]:
+def depth_sample_offset(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> tuple[float, float]:
     """(x, y), pixels to the right and up: where the depth of a pixel was sampled, from the pixel's middle. layer: the
     view layer that is rendered."""
     count, radius = layer.samples or scene.eevee.taa_render_samples, scene.render.filter_size
     if scene.render.use_motion_blur:
         count = math.ceil(count / scene.eevee.motion_blur_steps) * scene.eevee.motion_blur_steps
-    if count <= 1 or not NO_FILTER <= radius < SPARSE_FILTER:
+    if count <= 1 or not MIN_FILTER <= radius < MIN_SPARSE_FILTER:
         return 0.0, 0.0
     remembered, kept = [math.inf, math.inf], (0.0, 0.0)
     for number in range(count):
@@ -39,9 +39,9 @@ def _jitter(number, radius):
     """How far EEVEE shifts its pictures for a sample, pixels."""
     across = (radical_inverse(number + 1, 2) + 1 / 2) % 1
     up = (radical_inverse(number + 1, 3) + 2 / 3) % 1
-    if radius >= DISK_FILTER:
+    if radius >= MAX_DISK_FILTER:
         return across - 0.5, up - 0.5
-    length, angle = math.sqrt(across) * DISK * radius, 2 * math.pi * up
+    length, angle = math.sqrt(across) * DISK_RADIUS * radius, 2 * math.pi * up
     return length * math.cos(angle), length * math.sin(angle)
 
 

@@ -15,7 +15,9 @@ from ..host import main_thread
 from . import exr, materials, passes
 
 AOV = "Roughness"
-UNKNOWN = 0.5  # where nodes decide it that are not read, and of surfaces without a material: Blender's own default
+UNKNOWN_ROUGHNESS = (
+    0.5  # where nodes decide it that are not read, and of surfaces without a material: Blender's own default
+)
 # Beside passes.PASSES: the view layer's switch, and the pass.
 COLOR, DIRECT = ("use_pass_glossy_color", "Glossy Color"), ("use_pass_glossy_direct", "Glossy Direct")
 MATERIAL = "use_pass_cryptomatte_material", "CryptoMaterial00"
@@ -40,13 +42,13 @@ def load(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Glo
         try:
             rough = cut(f"{layer}.{AOV}.X")
         except KeyError:
-            rough = of_materials(cut(f"{layer}.{MATERIAL[1]}.r"))
+            rough = from_cryptomatte(cut(f"{layer}.{MATERIAL[1]}.r"))
     except KeyError:
         return None
     return gather.Gloss(color, rough)
 
 
-def shine(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Passes | None:
+def specular_passes(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Passes | None:
     """gather.Passes of a view layer as gather.View.shine wants them, and None where the file lacks a pass."""
     cut, found = exr.read(path, window), passes.load(path, layer, window)
     try:
@@ -56,21 +58,23 @@ def shine(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Pa
     return replace(found, diffuse_color=color, diffuse_direct=direct, emission=(np.zeros_like(found.depth),) * 3)
 
 
-def of_materials(numbers: np.ndarray) -> np.ndarray:
+def from_cryptomatte(numbers: np.ndarray) -> np.ndarray:
     """(H, W) float32 of the numbers by which Cryptomatte calls materials."""
     found, at = np.unique(np.ascontiguousarray(numbers).view(np.uint32), return_inverse=True)
     wanted = set(found.tolist())
     known = main_thread.run(
         lambda: {
-            number: materials.roughness(material, UNKNOWN)
+            number: materials.roughness(material, UNKNOWN_ROUGHNESS)
             for material in bpy.data.materials
-            if (number := cryptomatte(material.name)) in wanted
+            if (number := cryptomatte_id(material.name)) in wanted
         }
     )
-    return np.array([known.get(number, UNKNOWN) for number in found.tolist()], np.float32)[at].reshape(numbers.shape)
+    return np.array([known.get(number, UNKNOWN_ROUGHNESS) for number in found.tolist()], np.float32)[at].reshape(
+        numbers.shape
+    )
 
 
-def cryptomatte(name: str) -> int:
+def cryptomatte_id(name: str) -> int:
     """The bits of the number by which Cryptomatte calls a thing of this name: MurmurHash3 (A. Appleby; 32 bits, seed
     0), made a float that is finite and not denormal (Cryptomatte specification 1.2.0, ID generation)."""
 

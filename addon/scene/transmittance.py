@@ -24,13 +24,15 @@ STROKES = "use_pass_grease_pencil", "Grease Pencil"
 # Beside passes.PASSES: the view layer's switch, and the pass.
 PASSES = (roughness.COLOR, roughness.DIRECT, ENVIRONMENT, TRANSPARENT, VOLUME, STROKES)
 
-ROUNDING = 4e-3  # of the brightness of a pixel: passes are halves, and Combined weighs its samples by their brightness
-DARKEST = 1e-6  # W sr^-1 m^-2, below which nothing is told by division
-BRIGHTEST = 1e15  # whose square is still a float32
-LAYERS = 2  # of cells of the grid of extinctions, from one distance to twice that
-THICKEST = 12.0  # optical depth that a cell can tell
-WIDER = 4  # times a cell's side where Combined is blurred
-FINEST = 4  # pixels along a cell's side, at least
+ROUNDING_ERROR = (
+    4e-3  # of the brightness of a pixel: passes are halves, and Combined weighs its samples by their brightness
+)
+MIN_RADIANCE = 1e-6  # W sr^-1 m^-2, below which nothing is told by division
+MAX_RADIANCE = 1e15  # whose square is still a float32
+LAYERS_PER_DOUBLING = 2  # of cells of the grid of extinctions, from one distance to twice that
+MAX_OPTICAL_DEPTH = 12.0  # optical depth that a cell can tell
+BLUR_CELL_FACTOR = 4  # times a cell's side where Combined is blurred
+MIN_CELL = 4  # pixels along a cell's side, at least
 
 
 def needed(scene: bpy.types.Scene) -> tuple[tuple[str, str], ...]:
@@ -64,10 +66,10 @@ def load(path: str, layer: str, window: tuple[int, int, int, int], cell: int, bl
         blended, opacity = strokes + clear[..., None] * blended, 1 - clear * (1 - opacity)
     except KeyError:  # Blender has no such pass where nothing is drawn
         pass
-    return through(*rest, blended, opacity, cut(f"{layer}.Depth.Z"), cell, blurred)[::-1]
+    return transmitted_share(*rest, blended, opacity, cut(f"{layer}.Depth.Z"), cell, blurred)[::-1]
 
 
-def through(
+def transmitted_share(
     combined: np.ndarray,
     surface: np.ndarray,
     volume: np.ndarray,
@@ -86,8 +88,8 @@ def through(
     together still is theirs."""
     clear = 1 - np.clip(opacity, 0, 1)[..., None]
     passed = combined - blended - clear * volume
-    noise = ROUNDING * (np.abs(combined) + np.abs(blended) + np.abs(volume)) + DARKEST
-    cell = max(FINEST, cell) * (WIDER if blurred else 1)
+    noise = ROUNDING_ERROR * (np.abs(combined) + np.abs(blended) + np.abs(volume)) + MIN_RADIANCE
+    cell = max(MIN_CELL, cell) * (BLUR_CELL_FACTOR if blurred else 1)
     likely = clear * _nearby(passed, clear * surface, noise, depth, cell, everywhere=blurred)
     if blurred:
         return np.clip(likely, 0, 1)
@@ -103,7 +105,7 @@ def _nearby(passed, lit, noise, depth, cell, everywhere):
     found = np.ones_like(lit)
     if not wanted[0].size:
         return found
-    layer = LAYERS * np.log2(np.where(far, depth, 1.0))
+    layer = LAYERS_PER_DOUBLING * np.log2(np.where(far, depth, 1.0))
     layer = np.where(far, layer - layer[far].min(), 0.0)
     size = *(-(-side // cell) for side in depth.shape), int(layer.max()) + 1
     rows, columns = far.nonzero()
@@ -120,12 +122,17 @@ def _nearby(passed, lit, noise, depth, cell, everywhere):
         of_channels(noise),
         summed(depth) / np.maximum(summed(far.astype(float)), 1),
     )
-    weight = light**2 / (light**2 + rounding**2 + DARKEST**2)
+    weight = light**2 / (light**2 + rounding**2 + MIN_RADIANCE**2)
     share = np.maximum(of_channels(passed), 0) / np.where(light > 0, light, 1)
-    extinction = -np.log(np.clip(share, np.exp(-THICKEST), np.exp(THICKEST))) / np.maximum(away, 1e-6)[..., None]
+    extinction = (
+        -np.log(np.clip(share, np.exp(-MAX_OPTICAL_DEPTH), np.exp(MAX_OPTICAL_DEPTH)))
+        / np.maximum(away, 1e-6)[..., None]
+    )
     grid = _filled(extinction, np.where(light > 0, weight, 0))
     at = [(wanted[0] + 0.5) / cell - 0.5, (wanted[1] + 0.5) / cell - 0.5, layer[wanted] - 0.5]
-    found[wanted] = np.exp(np.clip(-_interpolated(grid, at) * depth[wanted][:, None], -THICKEST, THICKEST))
+    found[wanted] = np.exp(
+        np.clip(-_interpolated(grid, at) * depth[wanted][:, None], -MAX_OPTICAL_DEPTH, MAX_OPTICAL_DEPTH)
+    )
     return found
 
 
@@ -169,4 +176,4 @@ def _interpolated(grid, at):
 
 
 def _finite(values):
-    return np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), -BRIGHTEST, BRIGHTEST)
+    return np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), -MAX_RADIANCE, MAX_RADIANCE)

@@ -98,7 +98,7 @@ def window_matrix(lens: Lens, scene: bpy.types.Scene) -> np.ndarray:
     return found
 
 
-def shown(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
+def view_state(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
     """All that decides what a view sees of a still scene."""
     camera, data = view.camera, view.camera.data
     return (
@@ -120,7 +120,13 @@ def camera(view: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scene: bpy.typ
     place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
     (x, y, _, _), full = cameras.window(scene)
     return cameras.camera_at(
-        place, view.camera, depsgraph, (x, y), full, _aspect(view), pixel_jitter.middle(view, view.view_layers[0])
+        place,
+        view.camera,
+        depsgraph,
+        (x, y),
+        full,
+        _aspect(view),
+        pixel_jitter.depth_sample_offset(view, view.view_layers[0]),
     )
 
 

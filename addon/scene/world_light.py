@@ -9,10 +9,10 @@ import numpy as np
 from ..gather import images
 from . import materials
 
-ROWS = 512  # that a picture of the surroundings is read as, and twice as many columns
+IMAGE_ROWS = 512  # that a picture of the surroundings is read as, and twice as many columns
 
 
-def light(depsgraph: bpy.types.Depsgraph, known: dict) -> np.ndarray | None:
+def read(depsgraph: bpy.types.Depsgraph, known: dict) -> np.ndarray | None:
     """(4, 3), as gather.gather_views() wants it, of the world of a depsgraph's view layer: one of a single colour, or
     of a picture all around. None where there is no light, or where other nodes decide it.
 
@@ -21,7 +21,7 @@ def light(depsgraph: bpy.types.Depsgraph, known: dict) -> np.ndarray | None:
     if world is None:
         return None
     world = world.evaluated_get(depsgraph)
-    sky = materials.sky_of(world)
+    sky = materials.world_sky(world)
     if sky is None:
         return None
     found = np.zeros((4, 3))
@@ -40,7 +40,7 @@ def _of_image(sky, sun_threshold, known):
     key = image.session_uid, *image.size, image.filepath, image.colorspace_settings.name, *sky.color, sun_threshold
     if key not in known:
         # EEVEE makes a sun of what is brighter than its threshold, which then casts shadows and is none of ours.
-        found = images.means(image, 2 * ROWS, ROWS, sky.color, sun_threshold)
+        found = images.means(image, 2 * IMAGE_ROWS, IMAGE_ROWS, sky.color, sun_threshold)
         known[key] = None if found is None else harmonics(found[..., :3])
     if known[key] is None:
         return None

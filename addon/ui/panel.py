@@ -162,13 +162,13 @@ class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
         if stages:
             column = layout.column(align=True)
             for stage, seconds in stages.items():
-                _draw_row(column, say(report.in_words(stage)), f"{seconds:.3f} s")
+                _draw_row(column, say(report.label(stage)), f"{seconds:.3f} s")
             column.separator()
             _draw_row(column, say("Total time"), f"{sum(stages.values()):.3f} s")
         if memory := report.memory(scene):
             column = layout.column(align=True)
             for name, size in memory.items():
-                _draw_row(column, say(report.in_words(name)), f"{size / 2**20:.1f} MiB")
+                _draw_row(column, say(report.label(name)), f"{size / 2**20:.1f} MiB")
 
 
 def wrapped(text, fits):

@@ -10,12 +10,12 @@ from ..diagnosis import checks
 from ..host import events, main_thread, report, roles
 from ..translations import say
 from . import blend, scene_changes
-from .region_light import Region, Stage
-from .view_cache import Further
+from .region_light import RegionLight, ViewportContext
+from .view_cache import ViewCache
 
-LINE = 11  # points of the text's height
+TEXT_POINTS = 11  # points of the text's height
 
-_regions, _further = {}, {}  # by the address of the region, and of its viewport
+_region_lights, _view_caches = {}, {}  # by the address of the region, and of its viewport
 _waiting = set()  # addresses of regions that are to be drawn again
 _refused = {}  # why a scene's viewports are not lit, by its session_uid
 _handles = []
@@ -58,13 +58,13 @@ def is_lit(scene, space):
     )
 
 
-def _before():
+def _before_drawing():
     context = bpy.context
     if context.space_data and is_lit(context.scene, context.space_data):
         blend.remember()
 
 
-def _after():
+def _after_drawing():
     """A viewport has been drawn."""
     context = bpy.context
     scene, space, region = context.scene, context.space_data, context.region
@@ -74,13 +74,15 @@ def _after():
         return
     try:
         _light(
-            Stage(scene, context.view_layer, space, region, context.region_data, context.evaluated_depsgraph_get()),
+            ViewportContext(
+                scene, context.view_layer, space, region, context.region_data, context.evaluated_depsgraph_get()
+            ),
             address,
         )
     except gather.GpuUnavailable as error:
         _refuse(scene, say(*error.args))
     except Exception as error:  # a bug of ours must not cost the viewport
-        report.tell_traceback()
+        report.print_traceback()
         _refuse(
             scene,
             say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
@@ -90,14 +92,14 @@ def _after():
 
 
 def _light(stage, address):
-    if address not in _regions:
+    if address not in _region_lights:
         _prune()
-        _regions[address] = Region(_further.setdefault(stage.space.as_pointer(), Further()))
-    region = _regions[address]
+        _region_lights[address] = RegionLight(_view_caches.setdefault(stage.space.as_pointer(), ViewCache()))
+    region = _region_lights[address]
     if not bpy.app.is_job_running("RENDER"):  # which needs the GPU, and sets what a viewport is not to see
-        left = region.work(stage)
+        left = region.update(stage)
         if left is not None:
-            _again(address, left)
+            _redraw_region(address, left)
         gather.device.settle()  # other windows have GPU contexts of their own
     region.show(stage)
     if stage.space.overlay.show_overlays and stage.space.overlay.show_text:
@@ -106,11 +108,11 @@ def _light(stage, address):
 
 def _write(region, text):
     scale = bpy.context.preferences.system.ui_scale
-    blf.size(0, LINE * scale)
+    blf.size(0, TEXT_POINTS * scale)
     blf.color(0, 1.0, 1.0, 1.0, 0.8)
     blf.enable(0, blf.SHADOW)
     blf.shadow(0, 3, 0.0, 0.0, 0.0, 0.6)
-    blf.position(0, region.width / 2 - blf.dimensions(0, text)[0] / 2, LINE * scale, 0)
+    blf.position(0, region.width / 2 - blf.dimensions(0, text)[0] / 2, TEXT_POINTS * scale, 0)
     blf.draw(0, text)
     blf.disable(0, blf.SHADOW)
 
@@ -123,14 +125,14 @@ def _refuse(scene, text):
     bpy.app.timers.register(redraw, first_interval=0.0)
 
 
-def _again(address, seconds):
+def _redraw_region(address, seconds):
     """Have a region drawn again: while it is drawn Blender does not listen to that."""
     if not _waiting:
-        bpy.app.timers.register(_tag, first_interval=seconds)
+        bpy.app.timers.register(_tag_waiting, first_interval=seconds)
     _waiting.add(address)
 
 
-def _tag():
+def _tag_waiting():
     for area in _areas():
         for region in area.regions:
             if region.as_pointer() in _waiting:
@@ -148,23 +150,23 @@ def _areas():
 def _prune():
     """Let go of regions and viewports that are no longer shown."""
     shown = {region.as_pointer() for area in _areas() for region in area.regions}
-    for address in _regions.keys() - shown:
+    for address in _region_lights.keys() - shown:
         _let_go(address)
 
 
 def _let_go(address):
-    region = _regions.pop(address, None)
+    region = _region_lights.pop(address, None)
     if region is not None:
         region.free()
-    used = {id(each.further) for each in _regions.values()}
-    for space in [space for space, further in _further.items() if id(further) not in used]:
-        _further.pop(space).free()
+    used = {id(each.view_cache) for each in _region_lights.values()}
+    for space in [space for space, further in _view_caches.items() if id(further) not in used]:
+        _view_caches.pop(space).free()
 
 
 @persistent
 def free(*_):
     """Give all back that viewports have on the GPU."""
-    for address in list(_regions):
+    for address in list(_region_lights):
         _let_go(address)
     _waiting.clear()
 
@@ -183,7 +185,7 @@ def register():
     scene_changes.register()
     events.listen(HANDLERS)
     if not bpy.app.background:
-        for call, moment in ((_before, "PRE_VIEW"), (_after, "POST_PIXEL")):
+        for call, moment in ((_before_drawing, "PRE_VIEW"), (_after_drawing, "POST_PIXEL")):
             _handles.append(bpy.types.SpaceView3D.draw_handler_add(call, (), "WINDOW", moment))
 
 

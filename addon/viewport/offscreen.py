@@ -21,8 +21,8 @@ SHADING = {
     "diffuse_direct": "DIFFUSE_LIGHT",
     "emission": "EMISSION",
 }
-ALL = tuple(SHADING)
-LIT = ("diffuse_direct",)
+ALL_PASSES = tuple(SHADING)
+LIGHT_PASSES = ("diffuse_direct",)
 
 # How the viewport and the evaluated scene must be set while passes are drawn: without a compositor, and one sample a
 # pixel, which is then its middle.
@@ -31,14 +31,14 @@ _SHADED = (("use_compositor", "DISABLED"), ("use_dof", False))
 _SCENE = (("eevee", "taa_samples", 1), ("render", "preview_pixel_size", "1"))
 
 
-class Film:
+class OffscreenPicture:
     """An off-screen picture, kept while its size is asked for: with it EEVEE keeps its shadows from one pass to the
     next."""
 
     def __init__(self):
-        self._off = None
+        self._gpu_offscreen = None
 
-    def draw(self, stage, view_matrix, window_matrix, drawn, names=ALL):
+    def draw(self, stage, view_matrix, window_matrix, drawn, names=ALL_PASSES):
         """Draw passes of what `stage` shows, through a camera of these matrices (4 x 4), into `drawn`, gather.Drawn.
         Returns gather.Camera where the places are among them. Within drawing(stage). Raises gather.GpuUnavailable."""
         off, camera = self._ensure(drawn.size), None
@@ -60,21 +60,21 @@ class Film:
         return camera
 
     def _ensure(self, size):
-        if self._off is None or (self._off.width, self._off.height) != size:
+        if self._gpu_offscreen is None or (self._gpu_offscreen.width, self._gpu_offscreen.height) != size:
             self.free()
             try:
-                self._off = gpu.types.GPUOffScreen(*size, format="RGBA32F")
+                self._gpu_offscreen = gpu.types.GPUOffScreen(*size, format="RGBA32F")
             except Exception as error:  # Blender raises a bare Exception here
                 raise gather.GpuUnavailable(
                     "The GPU has no memory for a texture of {} x {}. Use a coarser start resolution, or lower "
                     "the render resolution",
                     *size,
                 ) from error
-        return self._off
+        return self._gpu_offscreen
 
     def free(self):
         """Free the picture and what EEVEE keeps for it."""
-        off, self._off = self._off, None
+        off, self._gpu_offscreen = self._gpu_offscreen, None
         if off is not None:
             off.free()
 

@@ -21,15 +21,15 @@ from ..scene import world_light
 from ..scene.pixel_jitter import radical_inverse
 from . import blend, offscreen, scene_changes
 
-REST = 0.3  # seconds without a change, after which the light is gathered in full
-SMOOTHLY = 0.1  # seconds that a draft may take; where it takes longer, its texels get coarser
-AT_ONCE = 2  # further views that are drawn again in one redraw
-DRAFT_DRAWS, DRAFT_BOUNCES = 4, 3  # at most: half the draws of the preset Draft
-COARSEST = 4  # pixels of a draft along its base's texels
+SETTLE_SECONDS = 0.3  # seconds without a change, after which the light is gathered in full
+DRAFT_SECONDS = 0.1  # seconds that a draft may take; where it takes longer, its texels get coarser
+VIEWS_PER_REDRAW = 2  # further views that are drawn again in one redraw
+DRAFT_GROUPS, DRAFT_BOUNCES = 4, 3  # at most: half the draws of the preset Draft
+MAX_TEXEL_SIZE = 4  # pixels of a draft along its base's texels
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
+class ViewportContext:
     """What is drawn, and where."""
 
     scene: bpy.types.Scene
@@ -48,7 +48,7 @@ class Stage:
         )  # as Blender has it
         return tuple(max(1, side // pixel) for side in self.extent)
 
-    def shows(self):
+    def shown_state(self):
         """All that decides which surfaces and lamps a viewport shows of a still scene."""
         space, shading = self.space, self.space.shading
         kinds = [name for name in space.bl_rna.properties.keys() if name.startswith("show_object_viewport_")]
@@ -65,14 +65,14 @@ class Stage:
             *(getattr(space, name) for name in kinds),
         )
 
-    def sees(self):
+    def view_state(self):
         """All that decides what the region sees of a still scene."""
         return (
             *map(tuple, self.rv3d.view_matrix),
             *map(tuple, self.rv3d.window_matrix),
             self.extent,
             self.size,
-            *self.shows(),
+            *self.shown_state(),
         )
 
     @property
@@ -81,46 +81,46 @@ class Stage:
         return self.region.width, self.region.height
 
 
-class Region:
+class RegionLight:
     """further: the Further of its viewport."""
 
     def __init__(self, further):
-        self.further, self._film = further, offscreen.Film()
-        self._seen, self._stamps, self._options = None, None, None
-        self._changed = 0.0  # when something last did
-        self._start = 1  # pixels of a draft along its base's texels
+        self.view_cache, self._offscreen_picture = further, offscreen.OffscreenPicture()
+        self._view_state, self._counts, self._options = None, None, None
+        self._changed_at = 0.0  # when something last did
+        self._texel_size = 1  # pixels of a draft along its base's texels
         self._drawn, self._camera = None, None  # of the last draft
         self._history, self._mean = gather.History(), interactive.Mean()
         self._gathers, self._wanted = 0, REBUILT
         self._worlds = {}  # world_light.light()'s, until something changes
 
-    def work(self, stage):
+    def update(self, stage):
         """Bring the light up to date, or nearer to its end, within what one redraw may take. Returns in how many
         seconds there is more to do, None if there is nothing. Raises gather.GpuUnavailable."""
         now, chosen = time.perf_counter(), _settings(stage)
         self._wanted = max(REBUILT, chosen.gathers) if isinstance(chosen, gather.Draws) else REBUILT
         stale = self._look_for_changes(stage)
         if stale is not None:
-            self._draft(stage, stale, chosen)
-            self._changed, self._gathers = time.perf_counter(), 0
-            return REST
-        if (left := self._changed + REST - now) > 0:
+            self._gather_draft(stage, stale, chosen)
+            self._changed_at, self._gathers = time.perf_counter(), 0
+            return SETTLE_SECONDS
+        if (left := self._changed_at + SETTLE_SECONDS - now) > 0:
             return left
-        self.further.place(stage, self._drawn, self._camera)
-        if self.further.is_stale():
+        self.view_cache.place(stage, self._drawn, self._camera)
+        if self.view_cache.is_stale():
             with offscreen.drawing(stage):
-                self.further.refresh(stage, AT_ONCE)
+                self.view_cache.refresh(stage, VIEWS_PER_REDRAW)
             self._gathers = 0
         elif self._gathers < self._wanted:
             self._gather(stage, chosen)
-        if self.further.is_stale() or self._gathers < self._wanted:
+        if self.view_cache.is_stale() or self._gathers < self._wanted:
             return 0.0
-        self._film.free()  # it is large: EEVEE has a pool of shadows for each
+        self._offscreen_picture.free()  # it is large: EEVEE has a pool of shadows for each
         return None
 
     def show(self, stage):
         """Add the light to the picture, if it is of this view."""
-        if self._mean.texture is not None and self._seen == stage.sees():
+        if self._mean.texture is not None and self._view_state == stage.view_state():
             blend.add(self._mean.texture, stage.extent, stage.scene.afterlight.strength)
 
     def progress(self):
@@ -128,55 +128,57 @@ class Region:
         return self._gathers, self._wanted
 
     def free(self):
-        self._film.free()
+        self._offscreen_picture.free()
         self._drawn, self._history = None, gather.History()
         self._mean.clear()
 
     def _look_for_changes(self, stage):
         """The passes that are to be drawn again, by their names in eevee.ALL; None where nothing has changed."""
-        seen, stamps, options = stage.sees(), scene_changes.stamps(stage.scene), _options(stage)
-        before = self._seen, self._stamps, self._options
-        self._seen, self._stamps, self._options = seen, stamps, options
-        others = self.further.follow(stage)
+        seen, stamps, options = stage.view_state(), scene_changes.change_counts(stage.scene), _options(stage)
+        before = self._view_state, self._counts, self._options
+        self._view_state, self._counts, self._options = seen, stamps, options
+        others = self.view_cache.follow(stage)
         if before[1] != stamps:
             self._worlds.clear()
-        if before[0] != seen or before[1].shapes != stamps.shapes:
-            return offscreen.ALL
-        if before[1].lamps != stamps.lamps:
-            return offscreen.LIT
+        if before[0] != seen or before[1].geometry != stamps.geometry:
+            return offscreen.ALL_PASSES
+        if before[1].lights != stamps.lights:
+            return offscreen.LIGHT_PASSES
         return () if others or before[2] != options else None
 
-    def _draft(self, stage, stale, chosen):
+    def _gather_draft(self, stage, stale, chosen):
         start = time.perf_counter()
         size = interactive.coarse_size(stage.size)
         if self._drawn is None or self._drawn.size != size:
-            self._drawn, stale = gather.Drawn(size, {}), offscreen.ALL
+            self._drawn, stale = gather.Drawn(size, {}), offscreen.ALL_PASSES
         with offscreen.drawing(stage):
-            camera = self.further.film.draw(stage, stage.rv3d.view_matrix, stage.rv3d.window_matrix, self._drawn, stale)
+            camera = self.view_cache.offscreen_picture.draw(
+                stage, stage.rv3d.view_matrix, stage.rv3d.window_matrix, self._drawn, stale
+            )
             self._camera = camera or self._camera
-            self.further.refresh(stage, AT_ONCE)
+            self.view_cache.refresh(stage, VIEWS_PER_REDRAW)
         if isinstance(chosen, gather.Draws):
             chosen = replace(
                 chosen,
-                start=self._start,
-                groups=min(chosen.groups, DRAFT_DRAWS),
+                start=self._texel_size,
+                groups=min(chosen.groups, DRAFT_GROUPS),
                 bounces=min(chosen.bounces, DRAFT_BOUNCES),
                 seed=chosen.seed + int(start * 1e3),
             )
         else:
-            chosen = replace(chosen, start=self._start, samples=chosen.samples // 2)
+            chosen = replace(chosen, start=self._texel_size, samples=chosen.samples // 2)
         self._add(stage, gather.View(self._drawn, self._camera, coarse=True), chosen, fresh=True)
         seconds = time.perf_counter() - start
-        if seconds > SMOOTHLY:
-            self._start = min(2 * self._start, COARSEST)
-        elif seconds < SMOOTHLY / 4:
-            self._start = max(self._start // 2, 1)
+        if seconds > DRAFT_SECONDS:
+            self._texel_size = min(2 * self._texel_size, MAX_TEXEL_SIZE)
+        elif seconds < DRAFT_SECONDS / 4:
+            self._texel_size = max(self._texel_size // 2, 1)
 
     def _gather(self, stage, chosen):
         """Once more, as a render does, through another place in the pixels."""
         drawn = gather.Drawn(stage.size, {})
         with offscreen.drawing(stage):
-            camera = self._film.draw(
+            camera = self._offscreen_picture.draw(
                 stage, stage.rv3d.view_matrix, _shifted(stage.rv3d.window_matrix, self._gathers, stage.size), drawn
             )
         chosen = replace(chosen, seed=chosen.seed + STRIDE * self._gathers)
@@ -187,7 +189,7 @@ class Region:
 
     def _add(self, stage, main, chosen, fresh):
         """One gather to what is shown, or in its place."""
-        views = [main, *self.further.views()]
+        views = [main, *self.view_cache.views()]
         history = self._history if main.coarse and stage.scene.afterlight.use_history else None
         found = interactive.indirect(
             views, stage.size, replace(chosen, strength=1.0), _world(stage, self._worlds), history
@@ -214,7 +216,7 @@ def _options(stage):
 def _world(stage, known):
     """The world's light, as gather.gather_views() takes it, where it is the scene's own and its shadow is wanted."""
     if stage.space.shading.use_scene_world_render and stage.scene.afterlight.use_world_shadow:
-        return world_light.light(stage.depsgraph, known)
+        return world_light.read(stage.depsgraph, known)
     return None
 
 

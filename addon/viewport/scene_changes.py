@@ -8,24 +8,24 @@ from bpy.app.handlers import persistent
 
 from ..host import events
 
-LAMPS = {"LIGHT", "WORLD"}
+LIGHT_TYPES = {"LIGHT", "WORLD"}
 
 
 @dataclass(frozen=True)
-class Stamps:
+class ChangeCounts:
     """How often something of a kind has changed."""
 
-    lamps: int = 0
-    shapes: int = 0
+    lights: int = 0
+    geometry: int = 0
 
 
-_stamps = {}  # by the scene's session_uid
-_outlines = {}  # what _outline() gave last
+_counts = {}  # by the scene's session_uid
+_states = {}  # what _outline() gave last
 
 
-def stamps(scene):
+def change_counts(scene):
     """Stamps of a scene."""
-    return _stamps.setdefault(scene.session_uid, Stamps())
+    return _counts.setdefault(scene.session_uid, ChangeCounts())
 
 
 @persistent
@@ -39,41 +39,41 @@ def follow_edits(scene, depsgraph):
         if update.id.id_type != "SCENE"  # which is said of any setting
         and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)
     ]
-    outline = _outline(scene, depsgraph)
+    outline = _state(scene, depsgraph)
     lamps = [each for each in changed if _is_lamp(each)]
-    trees = [each.node_tree for each in lamps if each.id_type in LAMPS]
-    if any(each not in lamps and each not in trees for each in changed) or _outlines.get(scene.session_uid) not in (
+    trees = [each.node_tree for each in lamps if each.id_type in LIGHT_TYPES]
+    if any(each not in lamps and each not in trees for each in changed) or _states.get(scene.session_uid) not in (
         None,
         outline,
     ):
-        _change(scene, "shapes")
+        _count(scene, "shapes")
     elif changed:
-        _change(scene, "lamps")
-    _outlines[scene.session_uid] = outline
+        _count(scene, "lamps")
+    _states[scene.session_uid] = outline
 
 
 @persistent
 def follow_frames(scene, *_):
     """Another frame is shown."""
-    _change(scene, "shapes")
+    _count(scene, "shapes")
 
 
 @persistent
 def forget(*_):
-    _stamps.clear()
-    _outlines.clear()
+    _counts.clear()
+    _states.clear()
 
 
-def _change(scene, kind):
-    known = stamps(scene)
-    _stamps[scene.session_uid] = replace(known, **{kind: getattr(known, kind) + 1})
+def _count(scene, kind):
+    known = change_counts(scene)
+    _counts[scene.session_uid] = replace(known, **{kind: getattr(known, kind) + 1})
 
 
 def _is_lamp(thing):
-    return thing.id_type in LAMPS or (thing.id_type == "OBJECT" and thing.type == "LIGHT")
+    return thing.id_type in LIGHT_TYPES or (thing.id_type == "OBJECT" and thing.type == "LIGHT")
 
 
-def _outline(scene, depsgraph):
+def _state(scene, depsgraph):
     """Of what changes without being called geometry, transform or shading: which objects are there, and EEVEE's
     settings."""
     eevee, layer = scene.eevee, depsgraph.view_layer

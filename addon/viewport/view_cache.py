@@ -18,45 +18,51 @@ from . import offscreen, scene_changes
 
 
 @dataclass(eq=False)
-class Kept:
+class CachedView:
     """A view: its (view matrix, window matrix), what was drawn, gather.Drawn and gather.Camera, and the passes that
     are to be drawn again."""
 
     matrices: tuple
     drawn: gather.Drawn
     camera: gather.Camera = None
-    stale: tuple = offscreen.ALL
+    stale: tuple = offscreen.ALL_PASSES
 
-    def age(self, names):
+    def mark_stale(self, names):
         """These passes show the scene as it was."""
-        self.stale = tuple(name for name in offscreen.ALL if name in (*self.stale, *names))
+        self.stale = tuple(name for name in offscreen.ALL_PASSES if name in (*self.stale, *names))
 
 
-class Further:
+class ViewCache:
     """Those of one 3D viewport, which may have several regions. film: eevee.Film for pictures of their size."""
 
     def __init__(self):
-        self.film, self._kept, self._wanted, self._stamps = offscreen.Film(), [], None, None
-        self._in_vain = None  # what place() saw where it found no place
+        self.offscreen_picture, self._views, self._wanted, self._counts = offscreen.OffscreenPicture(), [], None, None
+        self._failed_for = None  # what place() saw where it found no place
 
     def follow(self, stage):
         """Be the views that the settings ask for, and know which of them show the scene as it was. Returns whether
         they are others."""
-        size, pairs, stamps = interactive.coarse_size(stage.size), _matrices(stage), scene_changes.stamps(stage.scene)
-        wanted = size, stage.shows(), *(tuple(matrix.ravel()) for pair in pairs for matrix in pair)
+        size, pairs, stamps = (
+            interactive.coarse_size(stage.size),
+            _matrices(stage),
+            scene_changes.change_counts(stage.scene),
+        )
+        wanted = size, stage.shown_state(), *(tuple(matrix.ravel()) for pair in pairs for matrix in pair)
         if wanted == self._wanted:
-            for each in self._kept:
-                each.age(
-                    offscreen.ALL
-                    if stamps.shapes != self._stamps.shapes
-                    else offscreen.LIT
-                    if stamps != self._stamps
+            for each in self._views:
+                each.mark_stale(
+                    offscreen.ALL_PASSES
+                    if stamps.geometry != self._counts.geometry
+                    else offscreen.LIGHT_PASSES
+                    if stamps != self._counts
                     else ()
                 )
-            self._stamps = stamps
+            self._counts = stamps
             return False
-        self._wanted, self._stamps = wanted, stamps
-        self._kept = [Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.Drawn(size, {})) for pair in pairs]
+        self._wanted, self._counts = wanted, stamps
+        self._views = [
+            CachedView(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.Drawn(size, {})) for pair in pairs
+        ]
         return True
 
     def place(self, stage, drawn, camera):
@@ -67,43 +73,43 @@ class Further:
         if (
             not needs.views(scene)
             or settings.views != "AUTOMATIC"
-            or not view_scenes.scout(scene)
-            or view_scenes.placed(scene)
+            or not view_scenes.placement_scene(scene)
+            or view_scenes.stored_placement(scene)
         ):
             return
-        if self._in_vain == (self._wanted, self._stamps):
+        if self._failed_for == (self._wanted, self._counts):
             return
         start, rng = time.perf_counter(), np.random.default_rng(settings.seed)
         geometry = ray_cast.Geometry(stage.depsgraph)
-        shown = main_view.Picture(scene, stage.layer, interactive.read(drawn), camera)
-        bounces, seen = shown.paths(placement.CHOOSING_PATHS, geometry, rng, settings.bounces)
+        shown = main_view.MainView(scene, stage.layer, interactive.read(drawn), camera)
+        bounces, seen = shown.trace_paths(placement.PLACEMENT_PATHS, geometry, rng, settings.bounces)
         if bounces is None:  # no surface lights what is shown
-            self._in_vain = self._wanted, self._stamps
+            self._failed_for = self._wanted, self._counts
             return
         poses = placement.place(bounces, seen, geometry.cast, view_cameras.HALF_FIELD, settings.view_count, rng)
-        shares = placement.covered(bounces, seen, geometry.cast, view_cameras.HALF_FIELD, poses)
-        view_scenes.keep_placed(scene, placement.Placement(poses, shares, placement.CLEARANCE * bounces.size))
-        report.covered(scene, shares, time.perf_counter() - start)
+        shares = placement.coverage(bounces, seen, geometry.cast, view_cameras.HALF_FIELD, poses)
+        view_scenes.store_placement(scene, placement.Placement(poses, shares, placement.VIEW_CLEARANCE * bounces.size))
+        report.keep_coverage(scene, shares, time.perf_counter() - start)
         self.follow(stage)
 
     def is_stale(self):
-        return any(each.stale for each in self._kept)
+        return any(each.stale for each in self._views)
 
     def refresh(self, stage, most):
         """Draw at most so many views again. Within eevee.drawing()."""
-        for each in sorted([each for each in self._kept if each.stale], key=lambda each: len(each.stale), reverse=True)[
-            :most
-        ]:
-            camera = self.film.draw(stage, *each.matrices, each.drawn, each.stale)
+        for each in sorted(
+            [each for each in self._views if each.stale], key=lambda each: len(each.stale), reverse=True
+        )[:most]:
+            camera = self.offscreen_picture.draw(stage, *each.matrices, each.drawn, each.stale)
             each.camera, each.stale = camera or each.camera, ()
 
     def views(self):
         """[gather.View] of all that have been drawn."""
-        return [gather.View(each.drawn, each.camera, coarse=True) for each in self._kept if each.camera]
+        return [gather.View(each.drawn, each.camera, coarse=True) for each in self._views if each.camera]
 
     def free(self):
-        self.film.free()
-        self._kept.clear()
+        self.offscreen_picture.free()
+        self._views.clear()
 
 
 def _matrices(stage):
@@ -116,13 +122,13 @@ def _matrices(stage):
             each.camera.evaluated_get(stage.depsgraph)
             for each in settings.view_cameras
             if each.camera and not view_scenes.unusable(each.camera)
-        ][: needs.MOST_VIEWS]
+        ][: needs.MAX_VIEWS]
         found = [
             (np.array(camera.matrix_world.normalized()), view_cameras.lens_of(camera, stage.depsgraph, scene))
             for camera in cameras
         ]
     else:
-        placed = view_scenes.placed(scene) if view_scenes.scout(scene) else None
+        placed = view_scenes.stored_placement(scene) if view_scenes.placement_scene(scene) else None
         far = max(
             stage.space.clip_end, scene.camera.data.clip_end if scene.camera and scene.camera.type == "CAMERA" else 0
         )

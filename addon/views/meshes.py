@@ -10,27 +10,27 @@ from . import proxy_mesh
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class SceneMeshes:
     """solids: [Solid]. which: (N,) int, of the instances: indices of solids. to_world: (N, 4, 4), their matrices.
     looks: [materials.Look], of what the solids are made of. lamps: [(light, (4, 4) matrix)]."""
 
-    solids: list
-    which: np.ndarray
+    meshes: list
+    mesh_indices: np.ndarray
     to_world: np.ndarray
-    looks: list
+    materials: list
     lamps: list
 
 
 def read(depsgraph):
     """Found of what EEVEE draws and does not see through. The solids and lamps must not outlive the depsgraph's
     evaluation."""
-    which, known, solids, looks, lamps = [], {}, [], _Looks(), []
+    which, known, solids, looks, lamps = [], {}, [], _MaterialTable(), []
     for instance in depsgraph.object_instances:
         thing = instance.object
         data = thing.data
         kind = NOTHING if data is None else known.get(data.as_pointer())
         if kind is None:
-            kind = known[data.as_pointer()] = _kind(thing, solids, looks)
+            kind = known[data.as_pointer()] = _add_object(thing, solids, looks)
         if kind == LAMP:
             lamps.append((data, len(which)))
         which.append(kind)
@@ -39,47 +39,49 @@ def read(depsgraph):
     depsgraph.object_instances.foreach_get("show_self", shown)
     to_world, which = to_world.transpose(0, 2, 1).astype(float), np.array(which, int)  # Blender's are columns
     there = (which >= 0) & shown & np.isfinite(to_world).all((1, 2))
-    return Found(solids, which[there], to_world[there], looks.found, [(data, to_world[index]) for data, index in lamps])
+    return SceneMeshes(
+        solids, which[there], to_world[there], looks.summaries, [(data, to_world[index]) for data, index in lamps]
+    )
 
 
 NOTHING, LAMP = -1, -2  # instead of the index of a solid
 
 
-def _kind(thing, solids, looks):
+def _add_object(thing, solids, looks):
     """The index of an object's mesh in `solids`, which it is added to; or what else it is."""
     if thing.type == "LIGHT":
         return LAMP
     if thing.type != "MESH" or not len(thing.data.polygons):
         return NOTHING
     own = [looks.index(slot.material) for slot in thing.material_slots]
-    if own and all(looks.found[each].passes_light for each in own):
+    if own and all(looks.summaries[each].passes_light for each in own):
         return NOTHING
     corners = np.array(thing.bound_box)
-    solids.append(Solid(thing.data, np.array(own or [looks.index(None)]), np.array((corners.min(0), corners.max(0)))))
+    solids.append(Mesh(thing.data, np.array(own or [looks.index(None)]), np.array((corners.min(0), corners.max(0)))))
     return len(solids) - 1
 
 
-class _Looks:
+class _MaterialTable:
     """Looks of materials, each once."""
 
     def __init__(self):
-        self.found, self._known = [], {}
+        self.summaries, self._known = [], {}
 
     def index(self, material):
         if material not in self._known:
-            self._known[material] = len(self.found)
-            self.found.append(materials.look(material) if material else materials.Look())
+            self._known[material] = len(self.summaries)
+            self.summaries.append(materials.summarize(material) if material else materials.MaterialSummary())
         return self._known[material]
 
 
-class Solid:
+class Mesh:
     """A mesh. looks: (slots,) int, of its materials. box: (2, 3), its bounds."""
 
     def __init__(self, mesh, looks, box):
-        self._mesh, self._looks, self.box = mesh, looks, box
-        self.count = len(mesh.loops) - 2 * len(mesh.polygons)  # triangles
+        self._mesh, self._material_indices, self.bounds = mesh, looks, box
+        self.triangle_count = len(mesh.loops) - 2 * len(mesh.polygons)  # triangles
 
-    def simplified(self, most):
+    def simplify(self, most):
         """(points (V, 3), triangles (T, 3), looks (T,)), about `most` triangles or all."""
         mesh = self._mesh
         points = _array(mesh.attributes["position"].data, "vector", len(mesh.vertices), np.float32, 3)
@@ -87,16 +89,16 @@ class Solid:
         starts = _array(mesh.polygons, "loop_start", len(mesh.polygons), np.int32)
         faces = None
         if np.diff(starts, append=len(corners)).max() > 4:  # a fan of such a polygon may reach beyond it
-            faces = _array(mesh.loop_triangles, "polygon_index", self.count, np.int32)
-            corners = _array(mesh.loop_triangles, "vertices", self.count, np.int32, 3).ravel()
+            faces = _array(mesh.loop_triangles, "polygon_index", self.triangle_count, np.int32)
+            corners = _array(mesh.loop_triangles, "vertices", self.triangle_count, np.int32, 3).ravel()
             starts = np.arange(0, len(corners), 3)
-        points, triangles, polygons = proxy_mesh.simplified(points, corners, starts, self.box, most)
+        points, triangles, polygons = proxy_mesh.simplify(points, corners, starts, self.bounds, most)
         slots = mesh.attributes.get("material_index")
-        if len(self._looks) < 2 or slots is None:
-            return points, triangles, np.full(len(triangles), self._looks[0])
+        if len(self._material_indices) < 2 or slots is None:
+            return points, triangles, np.full(len(triangles), self._material_indices[0])
         slots = _array(slots.data, "value", len(mesh.polygons), np.int32)
         slots = slots[polygons if faces is None else faces[polygons]]
-        return points, triangles, self._looks[np.clip(slots, 0, len(self._looks) - 1)]
+        return points, triangles, self._material_indices[np.clip(slots, 0, len(self._material_indices) - 1)]
 
 
 def _array(collection, name, count, kind, width=1):

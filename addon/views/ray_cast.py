@@ -11,7 +11,7 @@ from mathutils.bvhtree import BVHTree
 
 from . import meshes, proxy_mesh
 
-LAMPS = 8  # drawn for each point where there are more
+MAX_LAMPS = 8  # drawn for each point where there are more
 
 
 class Geometry:
@@ -21,16 +21,16 @@ class Geometry:
     def __init__(self, depsgraph):
         found = meshes.read(depsgraph)
         self.lamps = [Lamp(*each) for each in found.lamps]
-        self._albedo = np.array([look.albedo for look in found.looks])
-        self._emission = np.array([look.emission for look in found.looks])
-        points, triangles, self._looks = proxy_mesh.triangles(found)
+        self._albedo = np.array([look.albedo for look in found.materials])
+        self._emission = np.array([look.emission for look in found.materials])
+        points, triangles, self._material_indices = proxy_mesh.build(found)
         self._tree = BVHTree.FromPolygons(points.tolist(), triangles.tolist(), all_triangles=True)
 
     def cast(self, origins, directions, limits, nearest=True):
         """As placement.py has it. The thing is for look()."""
         distance, normal = np.full(len(origins), np.inf), np.zeros((len(origins), 3))
         thing = np.full(len(origins), -1)
-        limits = np.minimum(limits, proxy_mesh.FARTHEST)
+        limits = np.minimum(limits, proxy_mesh.MAX_COORDINATE)
         rays = (np.asarray(each, float).tolist() for each in (origins, directions, limits))
         found = list(map(self._tree.ray_cast, *rays))
         hit = [index for index, (_, _, triangle, _) in enumerate(found) if triangle is not None]
@@ -38,10 +38,10 @@ class Geometry:
             _, facing, triangles, far = zip(*(found[index] for index in hit))
             distance[hit] = far
             if nearest:
-                normal[hit], thing[hit] = facing, self._looks[list(triangles)]
+                normal[hit], thing[hit] = facing, self._material_indices[list(triangles)]
         return distance, normal, thing
 
-    def look(self, things):
+    def albedo_and_emission(self, things):
         """(albedo, emission) of what was hit, (N,) each."""
         return self._albedo[things], self._emission[things]
 
@@ -52,7 +52,7 @@ class Lamp:
     def __init__(self, data, matrix):
         self._data, self._matrix = data, matrix
 
-    def shine(self, places, normals):
+    def illuminate(self, places, normals):
         """(radiance of a white surface without shadow (N,), directions to the lamp (N, 3), distances (N,))."""
         data, back = self._data, self._matrix[:3, 2]
         back = back / (np.linalg.norm(back) or 1)  # lamps shine along their own -Z
@@ -81,9 +81,9 @@ def direct_light(geometry, places, normals, rng):
     total, lamps = np.zeros(len(places)), geometry.lamps
     if not lamps:
         return total
-    drawn = range(len(lamps)) if len(lamps) <= LAMPS else rng.choice(len(lamps), LAMPS, replace=False)
+    drawn = range(len(lamps)) if len(lamps) <= MAX_LAMPS else rng.choice(len(lamps), MAX_LAMPS, replace=False)
     for index in drawn:
-        light, to, far = lamps[index].shine(places, normals)
+        light, to, far = lamps[index].illuminate(places, normals)
         lit = np.flatnonzero(light > 0)
         start = places[lit] + normals[lit] * (1e-3 * np.linalg.norm(np.ptp(places, axis=0)))
         blocked, _, _ = geometry.cast(start, to[lit], far[lit] * (1 - 5e-3), nearest=False)

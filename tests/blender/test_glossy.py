@@ -49,9 +49,9 @@ NAMES = {
 
 def test_numbers_of_materials(addon):
     for name, number in NAMES.items():
-        assert addon.scene.roughness.cryptomatte(name) == number
+        assert addon.scene.roughness.cryptomatte_id(name) == number
     for number in range(3000):  # about six of which would be no numbers, or denormal
-        bits = addon.scene.roughness.cryptomatte(f"Material.{number}")
+        bits = addon.scene.roughness.cryptomatte_id(f"Material.{number}")
         assert np.isfinite(np.uint32(bits).view(np.float32)) and bits >> 23 & 0xFF
 
 

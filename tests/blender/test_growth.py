@@ -26,8 +26,8 @@ def rays(afterlight):
 
 
 @pytest.fixture
-def stand_in(rays):
-    return rays.stand_in
+def proxy_mesh(rays):
+    return rays.proxy_mesh
 
 
 def seconds(call, times=2):
@@ -71,13 +71,13 @@ def place(rays, placement, depsgraph):
     starts, up = np.stack([x, y, np.full(500, -1.2)], -1), np.tile((0.0, 0, 1), (500, 1))
 
     def radiance(places, normals, things):
-        albedo, emission = geometry.look(things)
+        albedo, emission = geometry.albedo_and_emission(things)
         return rays.direct_light(geometry, places, normals, rng), albedo, emission
 
-    light = placement.bounces(starts, up, np.full(500, 0.8), geometry.cast, radiance, rng)
-    half, unseen = (1.7, 1.7), np.zeros(len(light.places), bool)
+    light = placement.trace(starts, up, np.full(500, 0.8), geometry.cast, radiance, rng)
+    half, unseen = (1.7, 1.7), np.zeros(len(light.positions), bool)
     poses = placement.place(light, unseen, geometry.cast, half, 3, rng)
-    return placement.covered(light, unseen, geometry.cast, half, poses)[-1]
+    return placement.coverage(light, unseen, geometry.cast, half, poses)[-1]
 
 
 def test_many_instances_cost_little(scene, rays, afterlight):
@@ -109,7 +109,7 @@ def test_heavy_meshes_cost_little_and_are_where_they_were(scene, rays):
     both = np.isfinite(found[0]) & np.isfinite(exact[0])
     assert np.allclose(found[0][both], exact[0][both], atol=1e-3)
     assert np.abs(np.sum(found[1] * exact[1], 1))[both].min() > 0.999
-    assert np.array_equal(geometry.look(found[2][both]), plain.look(exact[2][both]))
+    assert np.array_equal(geometry.albedo_and_emission(found[2][both]), plain.albedo_and_emission(exact[2][both]))
 
 
 def test_few_triangles_are_hit_as_they_are(scene, rays):
@@ -139,7 +139,7 @@ def test_few_triangles_are_hit_as_they_are(scene, rays):
     depsgraph = evaluated()
     geometry, (origins, directions, limits) = rays.Geometry(depsgraph), about()
     distance, normal, thing = geometry.cast(origins, directions, limits)
-    albedo, dark = geometry.look(thing)[0], 0
+    albedo, dark = geometry.albedo_and_emission(thing)[0], 0
     for index, (origin, direction) in enumerate(zip(origins, directions)):
         hit, place, facing, face, on, _ = scene.ray_cast(depsgraph, origin, direction)
         assert hit == np.isfinite(distance[index])
@@ -151,22 +151,24 @@ def test_few_triangles_are_hit_as_they_are(scene, rays):
     assert dark > 3
 
 
-def test_a_sample_of_instances_covers_as_much(stand_in):
+def test_a_sample_of_instances_covers_as_much(proxy_mesh):
     """As much area is kept, none is kept twice, and what is large is kept as it is."""
     areas = np.concatenate([np.random.default_rng(1).uniform(0.5, 2, 200_000), [1e5, 1e9]])
-    drawn, factors = stand_in.sample(areas)
-    assert len(drawn) < 1.1 * stand_in.TRIANGLES / (2 * stand_in.FEWEST) and len(set(drawn)) == len(drawn)
+    drawn, factors = proxy_mesh.sample_instances(areas)
+    assert len(drawn) < 1.1 * proxy_mesh.TRIANGLE_BUDGET / (2 * proxy_mesh.MIN_TRIANGLES) and len(set(drawn)) == len(
+        drawn
+    )
     assert {200_000, 200_001} <= set(drawn) and np.all(factors[-2:] == 1)
     assert (areas[drawn] * factors**2)[:-2].sum() == pytest.approx(areas[:-2].sum(), rel=0.05)
-    few, whole = stand_in.sample(areas[:100])
+    few, whole = proxy_mesh.sample_instances(areas[:100])
     assert np.array_equal(few, np.arange(100)) and np.all(whole == 1)
 
 
-def test_triangles_are_shared_out_by_length(stand_in):
+def test_triangles_are_shared_out_by_length(proxy_mesh):
     counts, uses = np.array([10, 10**6, 10**6, 50]), np.array([1, 1, 10, 10**3])
-    given = stand_in.shares(counts, uses, np.array([1e4, 30.0, 3.0, 1.0]))
-    assert given[0] == stand_in.FEWEST and given[1] == pytest.approx(10 * given[2])
-    assert (np.minimum(given, counts) * uses).sum() == pytest.approx(stand_in.TRIANGLES, rel=0.25)
+    given = proxy_mesh.triangle_shares(counts, uses, np.array([1e4, 30.0, 3.0, 1.0]))
+    assert given[0] == proxy_mesh.MIN_TRIANGLES and given[1] == pytest.approx(10 * given[2])
+    assert (np.minimum(given, counts) * uses).sum() == pytest.approx(proxy_mesh.TRIANGLE_BUDGET, rel=0.25)
 
 
 def test_places_that_are_no_numbers_stop_no_ray(scene, rays):
@@ -280,7 +282,7 @@ def test_a_large_world_picture_takes_no_memory(pytestconfig):
 
 def test_edits_cost_nothing_where_no_viewport_is_lit(scene, afterlight, monkeypatch):
     changes, asked = import_module(f"{afterlight.addon.__name__}.viewport.scene_changes"), []
-    monkeypatch.setattr(changes, "_outline", lambda *arguments: asked.append(1))
+    monkeypatch.setattr(changes, "_state", lambda *arguments: asked.append(1))
     for enabled, viewport in ((False, True), (True, False), (True, True)):
         scene.afterlight.enabled, scene.afterlight.use_viewport = enabled, viewport
         bpy.context.view_layer.update()

@@ -283,8 +283,8 @@ GARBAGE = {
 @pytest.mark.parametrize("kind", GARBAGE)
 def test_a_placement_of_garbage_is_none(with_views, addon, kind):
     views = addon.compositor.view_scenes
-    views.scout(with_views)["placed"] = GARBAGE[kind]
-    assert views.placed(with_views) is None
+    views.placement_scene(with_views)["placed"] = GARBAGE[kind]
+    assert views.stored_placement(with_views) is None
 
 
 def test_a_placement_is_read_as_it_was_kept(with_views, addon):
@@ -292,8 +292,8 @@ def test_a_placement_is_read_as_it_was_kept(with_views, addon):
 
     pose = np.eye(4)
     pose[:3, 3] = 1, 2, 3
-    addon.compositor.view_scenes.keep_placed(with_views, addon.views.placement.Placement([pose], [0.5, 0.9], 0.25))
-    found = addon.compositor.view_scenes.placed(with_views)
+    addon.compositor.view_scenes.store_placement(with_views, addon.views.placement.Placement([pose], [0.5, 0.9], 0.25))
+    found = addon.compositor.view_scenes.stored_placement(with_views)
     np.testing.assert_allclose(found.poses, [pose])
     assert (found.coverage, found.clearance) == ([0.5, 0.9], 0.25)
 
@@ -326,6 +326,6 @@ def test_a_scene_that_is_linked_from_a_file_of_0_3_0(fresh, addon):
     (scene,) = linked.scenes
     assert (
         scene.library
-        and addon.host.roles.source(scene.afterlight.helper) == scene
+        and addon.host.roles.lit_scene(scene.afterlight.helper) == scene
         and not addon.diagnosis.checks.findings(scene)
     )

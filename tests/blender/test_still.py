@@ -98,13 +98,13 @@ MOVE = {
 @pytest.mark.parametrize("change", KEEP)
 def test_what_keeps_still(scene, still, change):
     KEEP[change](scene)
-    assert still.moving(scene, bpy.context.evaluated_depsgraph_get()) == ""
+    assert still.find_motion(scene, bpy.context.evaluated_depsgraph_get()) == ""
 
 
 @pytest.mark.parametrize("change", MOVE)
 def test_what_may_move(scene, still, change):
     MOVE[change](scene)
-    assert still.moving(scene, bpy.context.evaluated_depsgraph_get()) != ""
+    assert still.find_motion(scene, bpy.context.evaluated_depsgraph_get()) != ""
 
 
 def test_scripts_between_frames_may_move_anything(scene, still):
@@ -113,7 +113,7 @@ def test_scripts_between_frames_may_move_anything(scene, still):
 
     bpy.app.handlers.frame_change_pre.append(script)
     try:
-        assert still.moving(scene, bpy.context.evaluated_depsgraph_get()) != ""
+        assert still.find_motion(scene, bpy.context.evaluated_depsgraph_get()) != ""
     finally:
         bpy.app.handlers.frame_change_pre.remove(script)
 
@@ -149,7 +149,7 @@ def test_views_are_rendered_once_while_only_the_camera_moves(scene, still, rende
     kept = animation(scene, tmp_path / "kept")
     assert views_among(rendered) == 2
     rendered.clear()
-    monkeypatch.setattr(still, "moving", lambda *_: "everything")
+    monkeypatch.setattr(still, "find_motion", lambda *_: "everything")
     anew = animation(scene, tmp_path / "anew")
     assert views_among(rendered) == 6
     for one, other in zip(kept, anew):

@@ -52,7 +52,7 @@ def elsewhere(temp_files, monkeypatch, tmp_path, request):
     (base / "blender_own").mkdir(parents=True)
     move(temp_files, monkeypatch, base / "blender_own")
     monkeypatch.setattr(temp_files, "_folders", [])
-    monkeypatch.setattr(temp_files, "LONGEST", 10)
+    monkeypatch.setattr(temp_files, "MAX_SEARCH_SECONDS", 10)
     yield base
     temp_files.release()
 
@@ -183,14 +183,14 @@ def test_blenders_folder_goes_only_where_it_is_blenders_and_empty(temp_files, el
     session = elsewhere / "blender_own"
     (session / "quit.blend").touch()
     temp_files.new(7)
-    temp_files.leave()
+    temp_files.release_at_exit()
     assert [each.name for each in session.iterdir()] == ["quit.blend"]
     (session / "quit.blend").unlink()
-    temp_files.leave()
+    temp_files.release_at_exit()
     assert not session.exists()
     move(temp_files, monkeypatch, elsewhere)  # as where Blender could not make one
     Path(temp_files.new(7)).touch()
-    temp_files.leave()
+    temp_files.release_at_exit()
     assert elsewhere.exists() and not list(elsewhere.iterdir())
 
 
@@ -278,7 +278,7 @@ def test_without_locks_nothing_is_cleared(temp_files, elsewhere, monkeypatch):
     def no_locks(_):
         raise OSError("No locks available")
 
-    monkeypatch.setattr(temp_files, "_take", no_locks)
+    monkeypatch.setattr(temp_files, "_acquire", no_locks)
     path, other = Path(temp_files.new(1)), folder_of_a_dead_blender(elsewhere)
     assert not list(path.parent.iterdir()) and temp_files.new(1) == str(path)
     temp_files.clear()
@@ -357,7 +357,7 @@ def test_a_temporary_folder_that_is_gone(temp_files, elsewhere, monkeypatch):
 
 def test_it_is_quick_and_gets_everywhere(temp_files, elsewhere, monkeypatch):
     """With the folders of years of crashes."""
-    monkeypatch.setattr(temp_files, "LONGEST", 0.005)
+    monkeypatch.setattr(temp_files, "MAX_SEARCH_SECONDS", 0.005)
     for number in range(2000):
         folder_of_a_dead_blender(elsewhere, f"blender_{number}/afterlight_{number}", files=(), lock=False)
     folder = folder_of_a_dead_blender(elsewhere)

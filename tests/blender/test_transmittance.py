@@ -19,7 +19,7 @@ def addon(afterlight):
 
 @pytest.fixture
 def share(addon):
-    return addon.scene.transmittance.through
+    return addon.scene.transmittance.transmitted_share
 
 
 # The formula, on arrays of which all is known

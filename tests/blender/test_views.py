@@ -278,19 +278,19 @@ def test_views_see_nearly_all_that_lights_the_picture_at_any_scale(placing, scal
     low, high = np.array((-2, -3, 0)) * scale, np.array((2, 3, 2.5)) * scale
     pillar = np.array((0.9, -3, 0)) * scale, np.array((1.2, 2, 2.5)) * scale  # a corner behind it
     cast, rng = room((low, high), pillar), np.random.default_rng(0)
-    light = placing.bounces(*floor(low, high), cast, evenly, rng)
+    light = placing.trace(*floor(low, high), cast, evenly, rng)
     assert abs(light.weights.sum() - 1) < 1e-9
-    unseen = np.zeros(len(light.places), bool)
+    unseen = np.zeros(len(light.positions), bool)
     half = np.tan(np.radians(50)) * np.array((1, 9 / 16))
     poses = placing.place(light, unseen, cast, half, 7, rng)
-    coverage = placing.covered(light, unseen, cast, half, poses)
+    coverage = placing.coverage(light, unseen, cast, half, poses)
     assert coverage[0] == 0 and coverage[-1] > 0.97 and 2 <= len(poses) <= 7
-    clearance = placing.CLEARANCE * light.size
+    clearance = placing.VIEW_CLEARANCE * light.size
     for pose in poses:
         assert np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3)) and np.linalg.det(pose[:3, :3]) > 0
         assert np.all(pose[:3, 3] - low > clearance) and np.all(high - pose[:3, 3] > clearance)
     again = np.random.default_rng(0)
-    same = placing.place(placing.bounces(*floor(low, high), cast, evenly, again), unseen, cast, half, 7, again)
+    same = placing.place(placing.trace(*floor(low, high), cast, evenly, again), unseen, cast, half, 7, again)
     assert np.array_equal(same, poses)
 
 
@@ -299,14 +299,14 @@ def test_views_taken_back_and_set_anew_see_more(placing, monkeypatch):
     low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
     pillar = np.array((0.9, -3, 0)), np.array((1.2, 2, 2.5))
     cast, half = room((low, high), pillar), np.tan(np.radians(30)) * np.array((1, 9 / 16))
-    light = placing.bounces(*floor(low, high), cast, evenly, np.random.default_rng(0))
-    unseen, gains = np.zeros(len(light.places), bool), []
+    light = placing.trace(*floor(low, high), cast, evenly, np.random.default_rng(0))
+    unseen, gains = np.zeros(len(light.positions), bool), []
     for seed in range(4):
         shares = []
         for rounds in (0, 3):
-            monkeypatch.setattr(placing, "ROUNDS", rounds)
+            monkeypatch.setattr(placing, "MAX_EXCHANGE_ROUNDS", rounds)
             poses = placing.place(light, unseen, cast, half, 4, np.random.default_rng(seed))
-            seen = [placing.sees(pose, half, light, placing.visible(pose[:3, 3], light, cast)) for pose in poses]
+            seen = [placing.in_frame(pose, half, light, placing.visible(pose[:3, 3], light, cast)) for pose in poses]
             shares.append(light.weights @ np.any(seen, 0))
         gains.append(shares[1] - shares[0])
     assert min(gains) > -0.001 and max(gains) > 0.003, gains
@@ -317,11 +317,11 @@ def test_what_is_seen_along_it_is_not_seen(placing):
     walls."""
     low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
     cast = room((low, high))
-    light = placing.bounces(*floor(low, high), cast, evenly, np.random.default_rng(0))
+    light = placing.trace(*floor(low, high), cast, evenly, np.random.default_rng(0))
     low_down = placing.visible(np.array((0, 0, 0.02)), light, cast)
-    near, floor_places = np.linalg.norm(light.places[:, :2], axis=1) < 0.15, light.places[:, 2] < 1e-6
+    near, floor_places = np.linalg.norm(light.positions[:, :2], axis=1) < 0.15, light.positions[:, 2] < 1e-6
     assert low_down[floor_places & near].any()
-    assert not low_down[floor_places & ~near & (np.linalg.norm(light.places[:, :2], axis=1) > 0.25)].any()
+    assert not low_down[floor_places & ~near & (np.linalg.norm(light.positions[:, :2], axis=1) > 0.25)].any()
     assert low_down[~floor_places].mean() > 0.9
 
 
@@ -333,8 +333,8 @@ def test_views_look_where_the_light_comes_from(placing):
         return np.where(places[:, 0] > 1.999, 100.0, 0), np.full(len(places), 0.5), np.zeros(len(places))
 
     cast, rng = room((low, high)), np.random.default_rng(1)
-    light = placing.bounces(*floor(low, high), cast, one_wall, rng)
-    poses = placing.place(light, np.zeros(len(light.places), bool), cast, (1.2, 0.7), 1, rng)
+    light = placing.trace(*floor(low, high), cast, one_wall, rng)
+    poses = placing.place(light, np.zeros(len(light.positions), bool), cast, (1.2, 0.7), 1, rng)
     assert -poses[0][0, 2] > 0.5
 
 
@@ -342,10 +342,12 @@ def test_light_arrives_only_by_way_of_what_is_seen(placing):
     """A wall that sends 40 % itself, and hands on 60 % from one behind a corner: by itself the far one brings
     nothing."""
     points = np.zeros((2, 3))
-    light = placing.Bounces(
+    light = placing.LightPaths(
         points, points, points, np.array((-1, 0)), np.array((0.4, 0.6)), np.array((1.0, 0.6)) / 1.6, 1.0
     )
-    arrived = [light.arrives(np.array(seen)) for seen in ((True, True), (True, False), (False, True), (False, False))]
+    arrived = [
+        light.arriving_share(np.array(seen)) for seen in ((True, True), (True, False), (False, True), (False, False))
+    ]
     assert arrived == pytest.approx([1, 0.4, 0, 0])
 
 
@@ -357,13 +359,13 @@ def test_views_go_where_light_comes_from_round_a_corner(placing):
         return np.where(places[:, 0] > 1.999, 1.0, 0), np.full(len(places), 0.7), np.zeros(len(places))
 
     cast, rng = room((low, high), (np.array((0.9, -3, 0)), np.array((1.2, 2, 2.5)))), np.random.default_rng(0)
-    light = placing.bounces(*floor(low, high), cast, far_wall, rng)
-    at_once = light.toward < 0
-    assert light.sent.sum() == pytest.approx(1) and light.sent[at_once].sum() < 0.4
+    light = placing.trace(*floor(low, high), cast, far_wall, rng)
+    at_once = light.parents < 0
+    assert light.contributions.sum() == pytest.approx(1) and light.contributions[at_once].sum() < 0.4
     assert light.weights[at_once].sum() * light.weights.size > at_once.sum(), "all that goes on passes them"
-    unseen, half = np.zeros(len(light.places), bool), np.tan(np.radians(50)) * np.array((1, 9 / 16))
+    unseen, half = np.zeros(len(light.positions), bool), np.tan(np.radians(50)) * np.array((1, 9 / 16))
     poses = placing.place(light, unseen, cast, half, 7, rng)
-    assert placing.covered(light, unseen, cast, half, poses)[-1] > 0.9
+    assert placing.coverage(light, unseen, cast, half, poses)[-1] > 0.9
     assert any(pose[0, 3] > 1.2 or (pose[1, 3] > 2 and -pose[0, 2] > 0) for pose in poses), "one looks behind it"
 
 
@@ -373,19 +375,19 @@ def test_nothing_to_see_and_nowhere_to_stand(placing):
     def nothing(origins, directions, limits, nearest=True):
         return np.full(len(origins), np.inf), np.zeros((len(origins), 3)), np.full(len(origins), -1)
 
-    assert placing.bounces(*floor(low, high), nothing, evenly, rng) is None
-    assert placing.bounces(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), nothing, evenly, rng) is None
-    assert len(placing.pixels(np.zeros((4, 4), bool), 100, rng)) == 0
+    assert placing.trace(*floor(low, high), nothing, evenly, rng) is None
+    assert placing.trace(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), nothing, evenly, rng) is None
+    assert len(placing.sample_pixels(np.zeros((4, 4), bool), 100, rng)) == 0
     cast = room((low, high))
-    light = placing.bounces(*floor(low, high), cast, evenly, rng)
-    seen = np.arange(len(light.places)) % 2 == 0
+    light = placing.trace(*floor(low, high), cast, evenly, rng)
+    seen = np.arange(len(light.positions)) % 2 == 0
     assert placing.place(light, seen, cast, (1, 1), 7, rng) == []
-    assert placing.covered(light, seen, cast, (1, 1), []) == [pytest.approx(light.arrives(seen))]
+    assert placing.coverage(light, seen, cast, (1, 1), []) == [pytest.approx(light.arriving_share(seen))]
 
 
 def test_lookat_is_upright_in_every_direction(placing):
     for direction in placing.DIRECTIONS:
-        pose = placing.looking(np.array((1.0, 2, 3)), direction)
+        pose = placing.pose_looking(np.array((1.0, 2, 3)), direction)
         assert np.allclose(-pose[:3, 2], direction) and pose[2, 1] > -1e-9
 
 
@@ -448,13 +450,13 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
 
     for view in views.scenes(scene)[1:used]:  # far from where they should be
         view.camera.location = (100, 0, 0)
-    stored = views.placed(scene)
-    views.keep_placed(scene, type(stored)([np.eye(4)], stored.coverage, stored.clearance))
+    stored = views.stored_placement(scene)
+    views.store_placement(scene, type(stored)([np.eye(4)], stored.coverage, stored.clearance))
     render(scene, tmp_path / "lit.exr")
     shares, _ = status.coverage(scene)
     assert shares[-1] > 0.95, "coverage had fallen, so the views moved"
 
-    stored = views.placed(scene)
+    stored = views.stored_placement(scene)
     assert bpy.ops.afterlight.place_views() == {"FINISHED"} and scene.afterlight.views == "MANUAL"
     depsgraph = bpy.context.evaluated_depsgraph_get()
     lenses = afterlight.addon.scene.view_cameras
@@ -509,8 +511,8 @@ def test_two_scenes_that_share_a_tree_do_not_render_each_others_views(scene, vie
     for each in views.scenes(scene):
         each.view_layers[0].use_pass_position = True
     render(scene, tmp_path / "lit.exr")
-    assert seen and views.placed(scene) is not None
-    assert views.placed(other) is None
+    assert seen and views.stored_placement(scene) is not None
+    assert views.stored_placement(other) is None
 
 
 def test_views_that_can_not_be_used_are_named_and_left_out(scene, views, afterlight, seen, tmp_path):
@@ -553,7 +555,7 @@ def test_a_view_that_fails_leaves_the_others(scene, views, afterlight, seen, tmp
 def test_what_covers_the_world_is_to_be_seen_as_well(scene, placing, monkeypatch, tmp_path, covers):
     """The box sends nothing by itself: all that its surfaces weigh beyond what they reflect is the world's light
     behind them."""
-    sent, bounces = [], placing.bounces
+    sent, bounces = [], placing.trace
 
     def spy(places, normals, albedo, cast, radiance, rng, most):
         def and_keep(*hits):
@@ -563,7 +565,7 @@ def test_what_covers_the_world_is_to_be_seen_as_well(scene, placing, monkeypatch
 
         return bounces(places, normals, albedo, cast, and_keep, rng, most)
 
-    monkeypatch.setattr(placing, "bounces", spy)
+    monkeypatch.setattr(placing, "trace", spy)
     scene.world = bpy.data.worlds.new("Bright")
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.6, 0.6, 0.6, 1)
     scene.afterlight.views, scene.afterlight.use_world_shadow, scene.afterlight.enabled = "AUTOMATIC", covers, True

@@ -93,7 +93,7 @@ def read(scene, addon):
 
 def said(world):
     """(6, 3): the same by our own idea of the world."""
-    found = world.light(bpy.context.evaluated_depsgraph_get(), {})
+    found = world.read(bpy.context.evaluated_depsgraph_get(), {})
     return found[0] + np.array(NORMALS) @ found[1:]
 
 
@@ -130,7 +130,7 @@ def test_a_picture_is_looked_at_once_a_render(scene, world, monkeypatch):
     first, calls = said(world), []
     monkeypatch.setattr(world, "harmonics", lambda *arguments: calls.append(1))
     assert np.array_equal(said(world), first) and not calls
-    said_anew = world.light(bpy.context.evaluated_depsgraph_get(), {})
+    said_anew = world.read(bpy.context.evaluated_depsgraph_get(), {})
     assert calls and said_anew is None
     assert texture.image.size[0] == 128
 
@@ -176,7 +176,7 @@ def strange(scene, kind):
 )
 def test_what_is_not_known_is_left_alone(scene, world, kind):
     strange(scene, kind)
-    assert world.light(bpy.context.evaluated_depsgraph_get(), {}) is None
+    assert world.read(bpy.context.evaluated_depsgraph_get(), {}) is None
 
 
 def test_harmonics_of_a_known_sky(world):
