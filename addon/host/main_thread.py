@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The GPU and the file in a window: taken by turns with the interface.
+"""A queue of calls for the main thread: GPU work and changes to the file while a render runs in its own thread.
 
-A render has a thread of its own there. Blender lends it the GPU only together with the lock that its interface draws
-under, and so for the whole of our part nothing could be drawn, and no ESC be seen. Therefore our engine asks for none:
-what it wants of the GPU it leaves here, a call at a time, and the main thread makes the calls between two looks at the
-window.
+In a window a render has its own thread. Blender lends that thread the GPU only together with the lock that the
+interface needs for drawing, so the interface would freeze, and ESC go unnoticed, for all of our part of the render. Our
+engine therefore does not ask for the GPU. It puts each GPU call into this queue, and the main thread makes the calls in
+short slices between two looks at the window.
 
-So is whatever changes the file during a render. To set a property tags all dependency graphs, and Blender crashes where
-the main thread builds one at that moment.
-"""
+Changes to the file during a render go the same way: setting a property tags all dependency graphs, and Blender crashes
+if the main thread is building one at that moment."""
 
 import queue
 import sys
@@ -22,20 +21,20 @@ import bpy
 
 from .. import gather
 
-TURN_SECONDS = 0.02  # seconds of calls before the window has its turn
-NEXT_CALL_WAIT = 0.002  # seconds that a turn waits for the next call
-RENDER_INTERVAL, IDLE_INTERVAL = 0.0, 0.1  # seconds until the next look: while something renders, and else
-CALL_POLL_INTERVAL = 0.05  # seconds that a call waits before it asks whether it is still wanted
-MUST_RUN_TIMEOUT = 0.5  # seconds that one waits which must be made
+TURN_SECONDS = 0.02  # how long the main thread makes calls before it looks at the window again
+NEXT_CALL_WAIT = 0.002  # seconds that such a turn waits for the next call
+RENDER_INTERVAL, IDLE_INTERVAL = 0.0, 0.1  # seconds between two turns: during a render, and otherwise
+CALL_POLL_INTERVAL = 0.05  # seconds between two checks whether a waiting call is still wanted
+MUST_RUN_TIMEOUT = 0.5  # seconds that a mandatory call waits for the main thread
 
 _calls = queue.SimpleQueue()  # (Future, call)
-_takes_calls = False  # whether anybody makes the calls; global like the queue, since the main thread is one
-_stopped = ContextVar("stopped", default=lambda: False)  # of the render whose thread this is
+_takes_calls = False  # whether the main thread makes calls; global like the queue, since there is one main thread
+_stopped = ContextVar("stopped", default=lambda: False)  # says whether this thread's render is to stop
 
 
 @contextmanager
 def cancel_when(stopped):
-    """What waits for its turn within gives up as soon as stopped() is true."""
+    """Context in which waiting calls raise gather.Cancelled as soon as stopped() is true."""
     before = _stopped.set(stopped)
     try:
         yield
@@ -44,36 +43,36 @@ def cancel_when(stopped):
 
 
 def run(call):
-    """Have the main thread make a call: returns what it returns, raises what it raises. Raises gather.Cancelled instead
-    when the render is to stop, or nobody makes calls any more."""
+    """Make a call in the main thread: returns what it returns and raises what it raises. Raises gather.Cancelled
+    instead if the render is to stop or the main thread makes no more calls."""
     if _is_main():
         return call()
     if _stopped.get()():
         raise gather.Cancelled
-    future = _enqueue(call)
-    while not future.done():
+    pending = _enqueue(call)
+    while not pending.done():
         try:
-            future.exception(timeout=CALL_POLL_INTERVAL)
+            pending.exception(timeout=CALL_POLL_INTERVAL)
         except TimeoutError:
-            if (_stopped.get()() or not _takes_calls) and future.cancel():
+            if (_stopped.get()() or not _takes_calls) and pending.cancel():
                 raise gather.Cancelled from None
-    return future.result()
+    return pending.result()
 
 
 def must_run(call):
-    """As run(), for what must be put back though the render is to stop: made here where the main thread does not come
-    round to it, since it waits for the end of the render."""
+    """Make a call in the main thread even if the render is to stop: for settings that must be put back. If the main
+    thread does not get to it in time, because it is waiting for the end of the render, the call is made here."""
     if _is_main():
         return call()
-    future = _enqueue(call)
+    pending = _enqueue(call)
     try:
-        return future.result(timeout=MUST_RUN_TIMEOUT)
+        return pending.result(timeout=MUST_RUN_TIMEOUT)
     except TimeoutError:
-        return call() if future.cancel() else future.result()
+        return call() if pending.cancel() else pending.result()
 
 
 def later(call):
-    """Have the main thread make a call when it comes round to it."""
+    """Make a call in the main thread without waiting for it; immediately if this is the main thread."""
     if _is_main():
         call()
     else:
@@ -81,7 +80,7 @@ def later(call):
 
 
 def after_render(call):
-    """Make a call that returns None when no render is under way: now, or soon."""
+    """Make a call, which returns None, once no render is running: immediately, or by a timer."""
     if bpy.app.background or not bpy.app.is_job_running("RENDER"):
         call()
     else:
@@ -89,10 +88,10 @@ def after_render(call):
 
 
 def _enqueue(call):
-    """The Future of a call that the main thread is to make."""
-    future = Future()
-    _calls.put((future, call))
-    return future
+    """Queue a call for the main thread. Returns its Future."""
+    pending = Future()
+    _calls.put((pending, call))
+    return pending
 
 
 def _is_main():
@@ -100,28 +99,28 @@ def _is_main():
 
 
 def _make_calls():
-    """Make calls for a moment; Blender asks again when it has looked after its window."""
-    end, wait = time.perf_counter() + TURN_SECONDS, 0.0
-    while (left := end - time.perf_counter()) > 0:
+    """A timer: make queued calls for one turn. Returns the seconds until the next turn, None to end."""
+    slice_end, timeout = time.perf_counter() + TURN_SECONDS, 0.0
+    while (seconds_left := slice_end - time.perf_counter()) > 0:
         try:
-            future, call = _calls.get(timeout=min(left, wait))
+            pending, call = _calls.get(timeout=min(seconds_left, timeout))
         except queue.Empty:
             break
-        _make_call(future, call)
-        wait = NEXT_CALL_WAIT
-    if wait:
+        _make_call(pending, call)
+        timeout = NEXT_CALL_WAIT
+    if timeout:
         gather.device.settle()
     if bpy.app.is_job_running("RENDER"):
         return RENDER_INTERVAL
     return IDLE_INTERVAL if _takes_calls else None
 
 
-def _make_call(future, call):
-    if future.set_running_or_notify_cancel():
+def _make_call(pending, call):
+    if pending.set_running_or_notify_cancel():
         try:
-            future.set_result(call())
+            pending.set_result(call())
         except BaseException as error:
-            future.set_exception(error)
+            pending.set_exception(error)
 
 
 def register():
@@ -133,6 +132,6 @@ def register():
 
 
 def unregister():
-    """A render that is under way is not lit any more, and what it leaves behind is still freed."""
+    """Make no more calls. A running render is no longer lit; the GPU memory that it leaves is still freed."""
     global _takes_calls
     _takes_calls = False
