@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Freestyle's lines over the light.
+"""Freestyle lines on top of the light.
 
-Blender draws them into the image, and light that is added afterwards would lie over them. While a scene is lit they
-come as a pass of their own, and a node of ours lays that over the lit picture, as Blender does over the plain one:
+Blender draws the lines into the image, so light added afterwards would cover them. While a scene is lit the lines are
+rendered as a pass of their own, and one of our nodes lays it over the lit image, as Blender does over the plain one:
 
     add.Result ------------------------- Background
                                          lines (Alpha Over) -> whatever used the image
-    Render Layers (scene).Freestyle ---- Foreground
-"""
+    Render Layers (scene).Freestyle ---- Foreground"""
 
 from ..scene import passes
 from .nodes import RESULT, A, adds_to_image_of, linked_node, new_node, role, socket
@@ -15,32 +14,32 @@ from .nodes import RESULT, A, adds_to_image_of, linked_node, new_node, role, soc
 LINE_PASS = (
     "freestyle_settings.as_render_pass",
     "Freestyle",
-)  # the view layer's switch, as passes.is_on() has it, and the pass
+)  # the property path from the view layer that switches the pass on, and the name of the pass
 FOREGROUND, BACKGROUND = "Foreground", "Background"
 
 
-_held = set()  # session_uids of scenes that held Freestyle off in this session
+_held = set()  # session_uids of scenes where suspend_drawing() was called in this process
 
 
 def needed(scene, layer):
-    """(switch, pass) of the lines of a view layer: nothing where there are none, or the user has them as a pass
-    already."""
+    """(switch, pass) of a view layer's lines, in a tuple: empty if it has none or the user already renders them as a
+    pass."""
     draws = (scene.render.use_freestyle or _is_held(scene)) and layer.use_freestyle
     return (LINE_PASS,) if draws and (_are_ours(layer) or not passes.is_on(layer, LINE_PASS[0])) else ()
 
 
 def suspend_drawing(scene):
-    """Keep Blender from drawing the lines in the next render, which repeats passes that have them. release() must
-    follow."""
+    """Keep Blender from drawing lines in the next render, which repeats kept passes that contain them. resume_drawing()
+    must follow."""
     if scene.render.use_freestyle:
-        # On the scene, too, so that a step that is undone into this moment has it as well.
+        # Also stored on the scene, so that undoing to this moment restores it.
         scene.afterlight.holds_lines = True
         _held.add(scene.session_uid)
         scene.render.use_freestyle = False
 
 
 def resume_drawing(scene):
-    """Let Blender draw the lines again, after hold()."""
+    """Let Blender draw the lines again after suspend_drawing()."""
     if _is_held(scene):
         scene.render.use_freestyle = True
         scene.afterlight.holds_lines = False
@@ -51,7 +50,7 @@ def _is_held(scene):
 
 
 def splice(tree, scene):
-    """Lay the lines over what the adding nodes of a tree make of the picture of `scene`, where we made them a pass."""
+    """Insert nodes that lay the lines over the lit image of `scene`, where we made the lines a pass."""
     for add in _adding(tree, scene):
         picture, result = linked_node(add, A), socket(add.outputs, RESULT)
         users = [(link.to_socket, link.is_muted) for link in result.links]
@@ -69,7 +68,7 @@ def splice(tree, scene):
 
 
 def unsplice(tree, scene):
-    """Take out what splice() put in and is not wanted any more, or has lost what it lay over."""
+    """Remove what splice() inserted if it is no longer wanted or has lost its background."""
     for over in [node for node in tree.nodes if role(node) == "lines"]:
         add = linked_node(over, BACKGROUND)
         picture = linked_node(add, A) if add and role(add) == "add" else None
@@ -82,20 +81,20 @@ def unsplice(tree, scene):
 
 
 def lacks(tree, scene):
-    """Whether a picture of `scene` shows its light without the lines that were made a pass."""
+    """Whether an image of `scene` is lit but lacks its lines, which were made a pass."""
     return any(
         role(link.to_node) != "lines" for add in _adding(tree, scene) for link in socket(add.outputs, RESULT).links
     )
 
 
 def is_wanted(scene, name):
-    """Whether the lines of the view layer of this name are to be laid over the light by a node."""
+    """Whether a node is to lay the lines of this view layer, given by name, over the light."""
     layer = scene.view_layers.get(name)
     return scene.afterlight.enabled and layer is not None and bool(needed(scene, layer)) and _are_ours(layer)
 
 
 def _adding(tree, scene):
-    """The adding nodes of a tree whose picture's lines are wanted."""
+    """The adding nodes of a tree whose image wants its lines."""
     return [
         node
         for node in tree.nodes
@@ -104,5 +103,5 @@ def _adding(tree, scene):
 
 
 def _are_ours(layer):
-    """Whether it was us who made the lines of a view layer a pass."""
+    """Whether Afterlight made the lines of a view layer a pass."""
     return LINE_PASS[0] in layer.afterlight.passes.split(",")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import bpy
 
 from .. import properties
-from ..compositor import setup
+from ..compositor import faults
 from ..host import engines, render_lock, roles
 from ..scene import needs
 from ..translations import say
@@ -53,7 +53,7 @@ def findings(scene):
             Finding(say("EEVEE's ray tracing already adds bounced light: ours would count it twice"), "RAY_TRACING")
         )
     if scene.afterlight.enabled:
-        found += [Finding(text, cure) for text, cure in setup.faults(scene).items()]
+        found += [Finding(text, cure) for text, cure in faults.find(scene).items()]
     if fixes.probe_volumes(scene):
         found.append(
             Finding(

@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy.types import Operator
 from bpy_extras import anim_utils
 
-from ..compositor import setup
+from ..compositor import faults, setup
 from ..diagnosis.fixes import CURES
 from ..host import put_back, roles
 from ..properties import PARAMETERS
@@ -66,7 +66,7 @@ class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
 
     def execute(self, context):
         setup.connect(context.scene)
-        for fault in setup.faults(context.scene):
+        for fault in faults.find(context.scene):
             self.report({"WARNING"}, fault)
         return {"FINISHED"}
 

@@ -124,7 +124,7 @@ def test_single_layer(scene, refuse, tmp_path):
 def test_compositing_switched_off(scene, plain, tmp_path, afterlight):
     """Without a window nobody can press Repair, so it is put right; with one the panel says so."""
     scene.render.use_compositing = False
-    (fault,) = afterlight.addon.compositor.setup.faults(scene)
+    (fault,) = afterlight.addon.compositor.faults.find(scene)
     assert "Compositing is switched off" in fault
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     assert (lit - plain).mean() > 0 and scene.afterlight.report == ""

@@ -91,7 +91,7 @@ def test_a_deleted_node_is_missed_and_repaired(scene, afterlight):
     (denoise,) = of_kind(scene, "denoise")
     light = denoise.inputs["Image"].links[0].from_socket
     tree.nodes.remove(denoise)
-    faults = afterlight.addon.compositor.setup.faults
+    faults = afterlight.addon.compositor.faults.find
     assert [cure for cure in faults(scene).values()] == ["REPAIR"]
     bpy.ops.afterlight.repair()
     assert not faults(scene) and len(of_kind(scene, "denoise")) == len(of_kind(scene, "light")) == 1

@@ -46,14 +46,14 @@ def test_unticking_leaves_the_file_as_it_was(scene, addon, kind):
         layer.use_freestyle = True
     before = written_down()
     scene.afterlight.enabled = True
-    wiring, tree = addon.compositor.setup, scene.compositing_node_group
-    assert not wiring.faults(scene) and scene.view_layers[0].freestyle_settings.as_render_pass
+    tree = scene.compositing_node_group
+    assert not addon.compositor.faults.find(scene) and scene.view_layers[0].freestyle_settings.as_render_pass
     adding = [
         node for group in addon.compositor.nodes.trees(tree) for node in group.nodes if node.get("afterlight") == "add"
     ]
     assert len([node for group in addon.compositor.nodes.trees(tree) for node in laid(group)]) == len(adding) > 0
     once = written_down()
-    wiring.connect(scene)
+    addon.compositor.setup.connect(scene)
     assert not differences(once, written_down())
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
@@ -63,7 +63,7 @@ def test_lines_that_are_a_pass_already_stay_one(scene, addon):
     scene.view_layers[0].freestyle_settings.as_render_pass = True
     before = written_down()
     scene.afterlight.enabled = True
-    assert not laid(scene.compositing_node_group) and not addon.compositor.setup.faults(scene)
+    assert not laid(scene.compositing_node_group) and not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
@@ -78,7 +78,7 @@ def test_lines_can_be_switched_while_ticked(scene, addon):
         scene.render.use_freestyle = wanted
         addon.compositor.setup.follow(scene)
         assert bool(laid(tree)) == layer.freestyle_settings.as_render_pass == wanted
-        assert not addon.compositor.setup.faults(scene)
+        assert not addon.compositor.faults.find(scene)
     assert not differences(without, written_down())
 
 
@@ -97,12 +97,12 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
         for user in users:
             tree.links.new(lit, user)
     elif "add" in doomed and kind == "simple":
-        assert addon.compositor.setup.faults(scene)
+        assert addon.compositor.faults.find(scene)
         for user in users:
             tree.links.new(picture.outputs["Image"], user)
-    assert addon.compositor.setup.faults(scene)
+    assert addon.compositor.faults.find(scene)
     assert bpy.ops.afterlight.repair() == {"FINISHED"}
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert [
         len([node for node in tree.nodes if node.get("afterlight") == name]) for name in ("add", "light", "lines")
     ] == [1, 1, 1]

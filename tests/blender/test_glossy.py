@@ -156,7 +156,7 @@ def test_unticking_leaves_the_file_as_it_was(scene, addon, kind):
     scene.afterlight.use_glossy = True
     before = written_down()
     scene.afterlight.enabled = True
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     tree = scene.compositing_node_group
     assert [node for group in addon.compositor.nodes.trees(tree) for node in of_kind(group, "gloss")]
     assert scene.view_layers[0].use_pass_glossy_color and scene.view_layers[0].use_pass_cryptomatte_material
@@ -174,7 +174,7 @@ def test_the_setting_can_be_switched_while_ticked(scene, addon, kind, how):
     before = written_down()
     for _ in range(2):
         scene.afterlight.use_glossy, scene.afterlight.method = True, "RADIOSITY"
-        assert not addon.compositor.setup.faults(scene)
+        assert not addon.compositor.faults.find(scene)
         once = written_down()
         addon.compositor.setup.connect(scene)
         assert not differences(once, written_down())
@@ -182,7 +182,7 @@ def test_the_setting_can_be_switched_while_ticked(scene, addon, kind, how):
             scene.afterlight.use_glossy = False
         else:
             scene.afterlight.method = "PAPER"
-        assert not addon.compositor.setup.faults(scene)
+        assert not addon.compositor.faults.find(scene)
         assert not scene.view_layers[0].use_pass_glossy_color
     assert not differences(before, written_down())
 
@@ -198,12 +198,12 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
     for name in doomed:
         for node in of_kind(tree, name):
             tree.nodes.remove(node)
-    assert addon.compositor.setup.faults(scene)
+    assert addon.compositor.faults.find(scene)
     if kind == "simple" and "add" in doomed:
         for user in users:
             tree.links.new(picture.outputs["Image"], user)
     assert bpy.ops.afterlight.repair() == {"FINISHED"}
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert [len(of_kind(tree, name)) for name in ("add", "light", "gloss")] == [1, 1, 1]
     scene.afterlight.enabled = False
     assert kind == "none" or not [node for node in tree.nodes if "afterlight" in node]

@@ -69,7 +69,7 @@ def test_a_copied_helper_scene_is_the_users(with_views, addon, how, kind):
     copy = bpy.context.scene
     for _ in range(2):
         settle()
-    assert copy.name in bpy.data.scenes and not addon.compositor.setup.faults(with_views)
+    assert copy.name in bpy.data.scenes and not addon.compositor.faults.find(with_views)
     assert not copy.afterlight.role or "can be deleted" in addon.diagnosis.checks.findings(copy)[0].text
     with_views.afterlight.enabled = False
     settle()
@@ -187,7 +187,7 @@ def test_a_helper_that_is_remapped(with_views, addon):
     with_views.afterlight.helper.user_remap(other)
     settle()
     addon.compositor.setup.connect(with_views)
-    assert not addon.compositor.setup.faults(with_views) and len(ours()) == 4
+    assert not addon.compositor.faults.find(with_views) and len(ours()) == 4
     with_views.afterlight.enabled = False
     assert other.name == "Precious" and other.camera.name == "Treasure" and not ours()
 
@@ -198,7 +198,7 @@ def test_records_that_a_script_clears_multiply_nothing(with_views, addon):
         with_views.afterlight.view_scenes.clear()
         settle()
         addon.compositor.setup.connect(with_views)
-        assert len(ours()) == 4 and not addon.compositor.setup.faults(with_views)
+        assert len(ours()) == 4 and not addon.compositor.faults.find(with_views)
     with_views.afterlight.helper = None
     with_views.afterlight.view_scenes.clear()
     with_views.afterlight.enabled = False
@@ -230,7 +230,7 @@ def test_nodes_of_the_user_with_a_property_of_our_name(scene, addon, kind):
         node["afterlight"] = kind
     before = written_down()
     scene.afterlight.enabled = True
-    assert not addon.compositor.setup.faults(scene) and [
+    assert not addon.compositor.faults.find(scene) and [
         node for node in tree.nodes if addon.compositor.nodes.role(node) == "add"
     ]
     scene.afterlight.enabled = False

@@ -84,7 +84,7 @@ for number, (event, name, how) in enumerate(json.loads(sys.argv[3])):
     helpers = [each.name for each in bpy.data.scenes if each.afterlight.role]
     warned = module.host.report.warnings(scene)
     print("case", json.dumps([event, change.__name__, means, scene.afterlight.report, warned,
-                              scene.afterlight.enabled, len(helpers), list(module.wiring.faults(scene))
+                              scene.afterlight.enabled, len(helpers), list(module.compositor.faults.find(scene))
                               if scene.afterlight.enabled else []]), flush=True)
     scene.camera.animation_data_clear()
     bpy.app.driver_namespace.pop("change", None)

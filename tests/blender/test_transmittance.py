@@ -226,7 +226,7 @@ def test_passes_follow_the_materials(fresh, addon):
     addon.compositor.setup.follow(scene)
     assert not any(map(layer.path_resolve, EXTRA))
     wall(cloud(), (0, 0, 0), (0, 0, 0))
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     addon.render.handlers.before_render(scene)  # nothing else tells of an edited material
     addon.render.handlers.after_render()
     assert all(map(layer.path_resolve, EXTRA))

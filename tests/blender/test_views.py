@@ -23,11 +23,6 @@ def views(afterlight):
 
 
 @pytest.fixture
-def wiring(afterlight):
-    return afterlight.addon.compositor.setup
-
-
-@pytest.fixture
 def seen(afterlight, monkeypatch):
     """[(light.Passes, light.Camera, Position pass)] of the views, as the engine of the light gets them."""
 
@@ -124,23 +119,23 @@ def kinds(scene):
 
 
 @pytest.mark.parametrize("kind", TREES)
-def test_unticking_with_views_leaves_the_file_as_it_was(scene, wiring, kind):
+def test_unticking_with_views_leaves_the_file_as_it_was(scene, addon, kind):
     TREES[kind](scene)
     scene.afterlight.views, scene.afterlight.view_count = "AUTOMATIC", 3
     before = written_down()
     scene.afterlight.enabled = True
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert kinds(scene)[:4] == ["scout", "view", "view", "view"] and set(kinds(scene)[4:]) == {"helper"}
     once = written_down()
-    wiring.connect(scene)
-    wiring.follow(scene)
+    addon.compositor.setup.connect(scene)
+    addon.compositor.setup.follow(scene)
     assert not differences(once, written_down())
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
 
 @pytest.mark.parametrize("kind", TREES)
-def test_views_that_come_later_are_rendered_before_the_light(scene, wiring, kind):
+def test_views_that_come_later_are_rendered_before_the_light(scene, addon, kind):
     TREES[kind](scene)
     scene.afterlight.enabled = True
     tree = scene.compositing_node_group
@@ -151,7 +146,7 @@ def test_views_that_come_later_are_rendered_before_the_light(scene, wiring, kind
     )
     before = written_down()
     scene.afterlight.views = "AUTOMATIC"
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     made = tree.nodes[name]
     assert (tuple(made.location), made.label) == ((7, 8), "Mine")
     assert (
@@ -169,35 +164,35 @@ def test_views_that_come_later_are_rendered_before_the_light(scene, wiring, kind
     assert not differences(before, after)
 
 
-def test_the_number_of_views_is_followed(scene, wiring, views):
+def test_the_number_of_views_is_followed(scene, addon, views):
     scene.afterlight.enabled = True
     scene.afterlight.views = "AUTOMATIC"
     for count in (2, 9, 1):
         scene.afterlight.view_count = count
         assert len(views.scenes(scene)) == count and kinds(scene).count("view") == count
-        assert not wiring.faults(scene)
+        assert not addon.compositor.faults.find(scene)
     by_hand(scene, side_camera(), side_camera())
     assert len(views.scenes(scene)) == 2
     scene.name = "Shot 7"
-    wiring.follow(scene)
+    addon.compositor.setup.follow(scene)
     assert [view.name for view in views.scenes(scene)] == [".Afterlight View 1 (Shot 7)", ".Afterlight View 2 (Shot 7)"]
 
 
 @pytest.mark.parametrize("how", ["LINK_COPY", "FULL_COPY"])
 @pytest.mark.parametrize("kind", ["none", "layered"])
-def test_a_copied_scene_gets_views_of_its_own(scene, wiring, views, how, kind):
+def test_a_copied_scene_gets_views_of_its_own(scene, addon, views, how, kind):
     TREES[kind](scene)
     scene.afterlight.view_count = 2
     scene.afterlight.views = "AUTOMATIC"
     scene.afterlight.enabled = True
     bpy.ops.scene.new(type=how)
     copy = bpy.context.scene
-    wiring.follow(copy)
-    assert not wiring.faults(scene) and not wiring.faults(copy)
+    addon.compositor.setup.follow(copy)
+    assert not addon.compositor.faults.find(scene) and not addon.compositor.faults.find(copy)
     assert len(views.scenes(copy)) == 2 and not set(views.scenes(copy)) & set(views.scenes(scene))
     assert all(view.background_set == copy for view in views.scenes(copy))
     copy.afterlight.enabled = False
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert not [each for each in bpy.data.scenes if each.afterlight.role]
     assert not [each for each in bpy.data.cameras if each.name.startswith(".Afterlight")]
@@ -207,16 +202,16 @@ def nodes_show(node, view):
     return node.bl_idname == "CompositorNodeRLayers" and node.scene == view
 
 
-def test_deleted_view_scenes_and_nodes_are_noticed_and_repaired(scene, wiring, views):
+def test_deleted_view_scenes_and_nodes_are_noticed_and_repaired(scene, addon, views):
     scene.afterlight.enabled = True
     scene.afterlight.views = "AUTOMATIC"
     tree = scene.compositing_node_group
     tree.nodes.remove(next(node for node in tree.nodes if nodes_show(node, views.scenes(scene)[2])))
     bpy.data.scenes.remove(views.scenes(scene)[1])
-    wiring.follow(scene)
-    assert wiring.faults(scene)
+    addon.compositor.setup.follow(scene)
+    assert addon.compositor.faults.find(scene)
     bpy.ops.afterlight.repair()
-    assert not wiring.faults(scene) and len(views.scenes(scene)) == 7
+    assert not addon.compositor.faults.find(scene) and len(views.scenes(scene)) == 7
 
 
 def test_deleting_the_scene_takes_its_views_along(scene, tmp_path):
