@@ -6,7 +6,8 @@ rendered as a pass of their own, and one of our nodes lays it over the lit image
 
     add.Result ------------------------- Background
                                          lines (Alpha Over) -> whatever used the image
-    Render Layers (scene).Freestyle ---- Foreground"""
+    Render Layers (scene).Freestyle ---- Foreground
+"""
 
 from ..scene import passes
 from .nodes import RESULT, A, adds_to_image_of, linked_node, new_node, role, socket

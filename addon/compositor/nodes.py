@@ -8,7 +8,8 @@
 optional_nodes.py may put further nodes between the light and B.
 
 Each of our nodes has the custom property MARK with its role, and the node type of that role. Everything is read off the
-nodes themselves, so nothing that the user moves, renames or deletes is restored from a stale record."""
+nodes themselves, so nothing that the user moves, renames or deletes is restored from a stale record.
+"""
 
 from ..host.roles import MARK, is_helper
 

@@ -6,7 +6,8 @@ light.
                                  gloss: A + B -> B of add
     light.Indirect Glossy -----> B
 
-nodes.py has the rest of the chain."""
+nodes.py has the rest of the chain.
+"""
 
 from .nodes import (
     GLOSSY_PASS,

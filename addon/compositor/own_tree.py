@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The compositor tree of a lit scene: the user's own if it is in use, else one that Afterlight makes and later removes.
 
-A tree is ours only if it carries our mark and the scene names it as `afterlight.own_tree`."""
+A tree is ours only if it carries our mark and the scene names it as `afterlight.own_tree`.
+"""
 
 import bpy
 

@@ -10,7 +10,8 @@ Render Layers nodes at the top level of the compositor, in the order in which Bl
 
 While nothing renders, the view layers of the views are switched off. The placement engine switches on those that
 the frame needs, and leave_all_out() switches them off again: a view that is not needed costs nothing, and neither do
-the views where the extension is missing."""
+the views where the extension is missing.
+"""
 
 import bpy
 import numpy as np

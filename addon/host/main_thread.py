@@ -7,7 +7,8 @@ engine therefore does not ask for the GPU. It puts each GPU call into this queue
 short slices between two looks at the window.
 
 Changes to the file during a render go the same way: setting a property tags all dependency graphs, and Blender crashes
-if the main thread is building one at that moment."""
+if the main thread is building one at that moment.
+"""
 
 import queue
 import sys

@@ -2,7 +2,8 @@
 """Recording settings of the user's before Afterlight changes them for a moment, and putting them back.
 
 Blender's settings reset one another: a file format its colour depth and colour space, a media type the video codec. No
-fixed order of names is right for all of them, so whatever differs is set again until nothing does."""
+fixed order of names is right for all of them, so whatever differs is set again until nothing does.
+"""
 
 import bpy
 

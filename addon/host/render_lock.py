@@ -3,7 +3,8 @@
 
 From its start Blender holds pointers to the scenes and the compositor of a render: adding or removing any of them then,
 from a handler, a timer, a driver or a thread, crashes Blender. Code that wants to do so asks postpones() first; the
-postponed scenes are set up, or cleared, when the render is over."""
+postponed scenes are set up, or cleared, when the render is over.
+"""
 
 _renders = []  # for each running render, whether it is locked; one may begin within another's handlers
 _waiting = set()  # session_uids of postponed scenes

@@ -7,7 +7,8 @@ remapped, a copied scene or a custom property of the same name is only a claim; 
 as they are.
 
 Roles: HELPER, the scene whose engine gathers the light; SCOUT, the scene whose engine places the views; VIEW, a scene
-through which EEVEE renders one view. They are stored in files and must not change."""
+through which EEVEE renders one view. They are stored in files and must not change.
+"""
 
 import bpy
 

@@ -6,7 +6,8 @@ Ours is made inside whichever it is, with an unguessable name and no access for 
 
 Beside our files each Blender process holds a file lock, which ends with the process however that ends; so the next
 start can tell which folders a killed process left. Process numbers would not do: they are reused, containers have their
-own, and on Windows asking for one can kill the process."""
+own, and on Windows asking for one can kill the process.
+"""
 
 import os
 import random
@@ -187,7 +188,9 @@ def _base():
 def _clean_session(base, name):
     with suppress(OSError):
         with _Folder(name, base) as session:
-            removed = [_remove_abandoned(session, name) for name in session.names() if name.startswith(FOLDER_PREFIX)]
+            removed = [
+                _remove_abandoned(session, child) for child in session.names() if child.startswith(FOLDER_PREFIX)
+            ]
         if any(removed):
             base.call(os.rmdir, name)
 
