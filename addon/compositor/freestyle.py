@@ -12,10 +12,8 @@ rendered as a pass of their own, and one of our nodes lays it over the lit image
 from ..scene import passes
 from .nodes import RESULT, A, adds_to_image_of, linked_node, new_node, role, socket
 
-LINE_PASS = (
-    "freestyle_settings.as_render_pass",
-    "Freestyle",
-)  # the property path from the view layer that switches the pass on, and the name of the pass
+# The path, from the view layer, of the property that switches the pass on, and the name of the pass.
+LINE_PASS = "freestyle_settings.as_render_pass", "Freestyle"
 FOREGROUND, BACKGROUND = "Foreground", "Background"
 
 

@@ -6,11 +6,12 @@ from .nodes import RESULT, A, B, adds_to_image_of, light_node_of, role, socket
 
 MUTED = "afterlight_muted"  # custom property of light nodes that we muted because their image is muted
 BLACK, CLEAR = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0)
+# The values of our nodes' inputs while nothing is linked to them, by role.
 UNLINKED_VALUES = {
     "add": {B: BLACK},
     "gloss": {A: CLEAR, B: BLACK},
     "denoise": {"Image": BLACK},
-}  # the values of our nodes' inputs while nothing is linked to them, by role
+}
 
 
 def follow(tree, scene):

@@ -111,10 +111,10 @@ def used_passes(scene, layer):
         for output in node.outputs
         if output.is_linked
     }
-    if any(
+    if any(  # the Cryptomatte node reads its passes without a link
         node.bl_idname == "CompositorNodeCryptomatteV2" and node.source == "RENDER" and node.scene == scene
         for node in all_nodes(tree)
-    ):  # the Cryptomatte node reads its passes without a link
+    ):
         used.add("CryptoMaterial00")
     return used
 

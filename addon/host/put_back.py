@@ -36,12 +36,7 @@ def restore(recorded):
         for owner, name, value in differing:
             try:
                 setattr(owner, name, value)
-            except (
-                TypeError,
-                ValueError,
-                AttributeError,
-                RuntimeError,
-            ):  # only allowed after another setting is restored
+            except (TypeError, ValueError, AttributeError, RuntimeError):  # not allowed before another is restored
                 pass
 
 

@@ -153,9 +153,7 @@ def print_line(text, stream=None):
     """Print a line on the terminal or another stream. Characters that its encoding lacks are escaped; errors are
     ignored."""
     stream = stream or sys.stdout
-    with suppress(
-        Exception
-    ):  # scripts may have replaced the stream by anything, and no render may fail for a line of text
+    with suppress(Exception):  # scripts may have replaced the stream, and no render may fail for a line of text
         encoding = getattr(stream, "encoding", None) or "ascii"
         print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream)
 

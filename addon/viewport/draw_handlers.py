@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where Blender calls us as it draws its viewports, and how it is asked to draw them again."""
+"""Blender's calls while it draws viewports, and asking it to draw them again."""
 
 import blf
 import bpy
@@ -13,17 +13,17 @@ from . import blend, scene_changes
 from .region_light import RegionLight, ViewportContext
 from .view_cache import ViewCache
 
-TEXT_POINTS = 11  # points of the text's height
+TEXT_POINTS = 11  # height of the text
 
-_region_lights, _view_caches = {}, {}  # by the address of the region, and of its viewport
-_waiting = set()  # addresses of regions that are to be drawn again
+_region_lights, _view_caches = {}, {}  # by the address of the region, and of its 3D viewport
+_waiting = set()  # addresses of regions to be drawn again
 _refused = {}  # why a scene's viewports are not lit, by its session_uid
 _handles = []
 
 
 def problem(scene):
-    """Why the viewports of `scene` are not lit though they should be, as a sentence for people; empty where nothing
-    keeps the light out."""
+    """Why the viewports of `scene` are not lit although they should be, as a sentence for people; empty if nothing is
+    wrong."""
     if scene.session_uid in _refused:
         return _refused[scene.session_uid]
     if checks.counts_twice(scene):
@@ -32,20 +32,19 @@ def problem(scene):
 
 
 def switched(scene):
-    """The viewports of `scene` are to be lit, or not."""
+    """The light in the viewports of `scene` was switched on or off."""
     _refused.pop(scene.session_uid, None)
     redraw()
 
 
 def redraw():
-    """Have all viewports drawn again."""
-    main_thread.later(
-        lambda: [area.tag_redraw() for area in _areas()]
-    )  # a script may set something in the thread of a render
+    """Redraw all viewports."""
+    # In the main thread, since scripts may change settings in a render's thread.
+    main_thread.later(lambda: [area.tag_redraw() for area in _areas()])
 
 
 def is_lit(scene, space):
-    """Whether a viewport shows the light of `scene`: the whole picture, by EEVEE."""
+    """Whether a viewport shows the light of `scene`: only the combined image, drawn by EEVEE."""
     shading = space.shading
     return (
         scene.afterlight.enabled
@@ -59,13 +58,14 @@ def is_lit(scene, space):
 
 
 def _before_drawing():
+    """Blender begins to draw a viewport."""
     context = bpy.context
     if context.space_data and is_lit(context.scene, context.space_data):
         blend.remember()
 
 
 def _after_drawing():
-    """A viewport has been drawn."""
+    """Blender has drawn a viewport."""
     context = bpy.context
     scene, space, region = context.scene, context.space_data, context.region
     address = region.as_pointer()
@@ -81,7 +81,7 @@ def _after_drawing():
         )
     except gather.GpuUnavailable as error:
         _refuse(scene, say(*error.args))
-    except Exception as error:  # a bug of ours must not cost the viewport
+    except Exception as error:  # a bug of ours must not break the viewport
         report.print_traceback()
         _refuse(
             scene,
@@ -91,19 +91,19 @@ def _after_drawing():
         blend.forget()
 
 
-def _light(stage, address):
+def _light(viewport, address):
     if address not in _region_lights:
         _prune()
-        _region_lights[address] = RegionLight(_view_caches.setdefault(stage.space.as_pointer(), ViewCache()))
+        _region_lights[address] = RegionLight(_view_caches.setdefault(viewport.space.as_pointer(), ViewCache()))
     region = _region_lights[address]
-    if not bpy.app.is_job_running("RENDER"):  # which needs the GPU, and sets what a viewport is not to see
-        left = region.update(stage)
-        if left is not None:
-            _redraw_region(address, left)
-        gather.device.settle()  # other windows have GPU contexts of their own
-    region.show(stage)
-    if stage.space.overlay.show_overlays and stage.space.overlay.show_text:
-        _write(stage.region, say("Indirect Light {} / {}", *region.progress()))
+    if not bpy.app.is_job_running("RENDER"):  # a render needs the GPU, and changes settings that viewports must not see
+        seconds_left = region.update(viewport)
+        if seconds_left is not None:
+            _redraw_region(address, seconds_left)
+        gather.device.settle()  # other windows have their own GPU contexts
+    region.show(viewport)
+    if viewport.space.overlay.show_overlays and viewport.space.overlay.show_text:
+        _write(viewport.region, say("Indirect Light {} / {}", *region.progress()))
 
 
 def _write(region, text):
@@ -118,7 +118,7 @@ def _write(region, text):
 
 
 def _refuse(scene, text):
-    """Light no viewport of `scene` any more, and say why, until the box is ticked again."""
+    """Light no viewport of `scene` any more, and say why, until the checkbox is ticked again."""
     _refused[scene.session_uid] = text
     free()
     report.pop_up(text, say("Afterlight: the viewport has no indirect light"))
@@ -126,7 +126,8 @@ def _refuse(scene, text):
 
 
 def _redraw_region(address, seconds):
-    """Have a region drawn again: while it is drawn Blender does not listen to that."""
+    """Redraw a region after some seconds, by a timer: while it is being drawn, Blender ignores requests to redraw
+    it."""
     if not _waiting:
         bpy.app.timers.register(_tag_waiting, first_interval=seconds)
     _waiting.add(address)
@@ -148,7 +149,7 @@ def _areas():
 
 
 def _prune():
-    """Let go of regions and viewports that are no longer shown."""
+    """Free what belongs to regions and viewports that are no longer shown."""
     shown = {region.as_pointer() for area in _areas() for region in area.regions}
     for address in _region_lights.keys() - shown:
         _let_go(address)
@@ -158,14 +159,14 @@ def _let_go(address):
     region = _region_lights.pop(address, None)
     if region is not None:
         region.free()
-    used = {id(each.view_cache) for each in _region_lights.values()}
-    for space in [space for space, further in _view_caches.items() if id(further) not in used]:
+    caches_in_use = {id(each.view_cache) for each in _region_lights.values()}
+    for space in [space for space, view_cache in _view_caches.items() if id(view_cache) not in caches_in_use]:
         _view_caches.pop(space).free()
 
 
 @persistent
 def free(*_):
-    """Give all back that viewports have on the GPU."""
+    """Free everything that viewports hold on the GPU."""
     for address in list(_region_lights):
         _let_go(address)
     _waiting.clear()

@@ -99,9 +99,8 @@ class Mesh:
         corners = _array(mesh.attributes[".corner_vert"].data, "value", len(mesh.loops), np.int32)
         starts = _array(mesh.polygons, "loop_start", len(mesh.polygons), np.int32)
         faces = None
-        if (
-            np.diff(starts, append=len(corners)).max() > 4
-        ):  # larger polygons may be concave: a fan of triangles could leave them
+        # A polygon of more than four corners may be concave, and a fan of triangles could leave it.
+        if np.diff(starts, append=len(corners)).max() > 4:
             faces = _array(mesh.loop_triangles, "polygon_index", self.triangle_count, np.int32)
             corners = _array(mesh.loop_triangles, "vertices", self.triangle_count, np.int32, 3).ravel()
             starts = np.arange(0, len(corners), 3)

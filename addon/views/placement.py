@@ -280,6 +280,5 @@ def _cosine_directions(normals, rng):
     return directions / np.linalg.norm(directions, axis=1)[:, None]
 
 
-WORLD_TO_VIEW = np.array(
-    [pose_looking(np.zeros(3), direction)[:3, :3].T for direction in DIRECTIONS], np.float32
-)  # rotation from world to view, for each of DIRECTIONS
+# The rotation from world to view, for each of DIRECTIONS.
+WORLD_TO_VIEW = np.array([pose_looking(np.zeros(3), direction)[:3, :3].T for direction in DIRECTIONS], np.float32)

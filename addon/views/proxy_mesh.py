@@ -88,9 +88,8 @@ def _cluster(points, corners, starts, box, cell):
     cells, outward, count = np.zeros(len(points), np.int32), np.zeros(len(points), np.float32), 1
     for axis, (low, high) in enumerate(box.T.astype(np.float32)):
         along, steps = points[:, axis] - low, int((high - low) / cell) + 1
-        cells = cells * steps + np.fmax(np.fmin(along * np.float32(1 / cell), steps - 1), 0).astype(
-            np.int32
-        )  # fmin, fmax: NaN becomes a number
+        step = np.fmax(np.fmin(along * np.float32(1 / cell), steps - 1), 0)  # these turn NaN into a number
+        cells = cells * steps + step.astype(np.int32)
         outward += np.abs(along * np.float32(2 / max(high - low, 1e-30)) - 1)
         count *= steps
     # Keep the outermost point of each cell, so that the edges of walls still meet other walls.

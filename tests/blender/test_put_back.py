@@ -116,7 +116,7 @@ def test_a_colour_space_without_a_use(rendered, afterlight, file_format):
 def test_no_warning_of_a_colour_space_that_was_never_chosen(rendered, afterlight, capfd):
     other = bpy.data.scenes.new("Other")
     capfd.readouterr()
-    afterlight.addon.host.put_back.restore(afterlight.addon.scene.passes._to_multilayer_exr(other.render))
+    afterlight.addon.host.put_back.restore(afterlight.addon.scene.frame_store._to_multilayer_exr(other.render))
     bpy.data.scenes.remove(other)
     assert "WARNING" not in "".join(capfd.readouterr())
 

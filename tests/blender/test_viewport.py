@@ -11,17 +11,17 @@ from mathutils import Matrix
 
 
 @pytest.fixture
-def stamps(addon, scene):
+def changes(addon, scene):
     """A function that tells of which kinds something has changed since it was last called."""
-    changes = import_module(f"{addon.__name__}.viewport.scene_changes")
+    scene_changes = import_module(f"{addon.__name__}.viewport.scene_changes")
     scene.afterlight.enabled = scene.afterlight.use_viewport = True
     bpy.context.view_layer.update()
-    before = [changes.stamps(scene)]
+    before = [scene_changes.change_counts(scene)]
 
     def changed():
         bpy.context.view_layer.update()
-        now = changes.stamps(scene)
-        found = {kind for kind in ("lamps", "shapes") if getattr(now, kind) != getattr(before[0], kind)}
+        now = scene_changes.change_counts(scene)
+        found = {kind for kind in ("lights", "geometry") if getattr(now, kind) != getattr(before[0], kind)}
         before[0] = now
         return found
 
@@ -82,33 +82,33 @@ def strength_is_set(scene):
 @pytest.mark.parametrize(
     "edit, kinds",
     [
-        (lamp_moves, {"lamps"}),
-        (lamp_brightens, {"lamps"}),
-        (wall_moves, {"shapes"}),
-        (material_changes, {"shapes"}),
-        (wall_is_hidden, {"shapes"}),
-        (wall_is_removed, {"shapes"}),
-        (both_move, {"shapes"}),
-        (eevee_is_set, {"shapes"}),
-        (frame_changes, {"shapes"}),
+        (lamp_moves, {"lights"}),
+        (lamp_brightens, {"lights"}),
+        (wall_moves, {"geometry"}),
+        (material_changes, {"geometry"}),
+        (wall_is_hidden, {"geometry"}),
+        (wall_is_removed, {"geometry"}),
+        (both_move, {"geometry"}),
+        (eevee_is_set, {"geometry"}),
+        (frame_changes, {"geometry"}),
         (wall_is_selected, set()),
         (strength_is_set, set()),
     ],
 )
-def test_edits_are_told_apart(scene, stamps, edit, kinds):
+def test_edits_are_told_apart(scene, changes, edit, kinds):
     edit(scene)
-    assert stamps() == kinds
+    assert changes() == kinds
 
 
-def test_a_new_world_is_followed(scene, stamps):
+def test_a_new_world_is_followed(scene, changes):
     world_is_given(scene)
-    assert stamps()
+    assert changes()
 
 
-def test_where_no_viewport_is_lit_nothing_is_followed(scene, stamps):
+def test_where_no_viewport_is_lit_nothing_is_followed(scene, changes):
     scene.afterlight.use_viewport = False
     wall_moves(scene)
-    assert stamps() == set()
+    assert changes() == set()
 
 
 def test_a_viewport_is_lit_where_all_is_asked_for(scene, addon):

@@ -40,7 +40,7 @@ def handlers():
 def progress():
     """[(gathers, how many, further views)] of each region that is lit."""
     return [
-        (region._gathers, region._wanted, len(region.view_cache.views()))
+        (region._gathers, region._gathers_wanted, len(region.view_cache.views()))
         for region in viewports._region_lights.values()
     ]
 
