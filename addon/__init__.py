@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender sees of Afterlight, registered in the order in which the parts need one another."""
+"""The parts of Afterlight that register something in Blender, in the order in which they need one another."""
 
 from . import migration, properties, translations
 from .host import main_thread
 from .render import engine, handlers, relight, views_engine
-from .ui import help_page, operators, panel, views_panel
+from .ui import help_page, operators, panel, transfer, views_panel
 from .viewport import draw_handlers as viewports
 
-# migration before handlers: what follows a loaded file must find its settings in order.
+# migration before handlers: those of a loaded file need settings of this version.
 PARTS = (
     translations,
     help_page,
@@ -17,6 +17,7 @@ PARTS = (
     views_engine,
     relight,
     operators,
+    transfer,
     panel,
     views_panel,
     migration,

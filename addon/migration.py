@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of earlier versions: as soon as one is opened its settings become this version's, and mean what they meant.
-
-Settings of a newer version are left as they are; checks.py says so.
-"""
+"""Files of earlier versions: when one is opened its settings are converted to this version without a change of the
+image. Settings of a newer version are left alone, and checks.py says so."""
 
 import bpy
 from bpy.app.handlers import persistent
@@ -13,7 +11,7 @@ from .host import events
 
 DEFAULTS_OF_0_1_0 = {
     "method": "PAPER",
-    "views": "CAMERA",  # all that there was
+    "views": "CAMERA",  # the only ones of 0.1.0
     "strength": 1.0,
     "start": "HALF",
     "samples": 256,
@@ -24,22 +22,22 @@ DEFAULTS_OF_0_1_0 = {
 
 
 def _store_defaults(old):
-    """0.1.0 stored only what differed from its defaults, and knew one method. Since then a file holds every setting."""
+    """For 0.1.0, which stored only settings that were not at their defaults. Later versions store every setting."""
     properties.store_all(old, DEFAULTS_OF_0_1_0)
 
 
-def _without_what_is_new(old):
-    """Pictures of older files stay what they were."""
+def _without_history(old):
+    """For versions without Average Frames, whose images must not change."""
     old.use_history = False
 
 
-# The version that changed something, and what brings older settings up to it. A setting that gets a new name takes its
-# keyframes and drivers along.
-STEPS = (((0, 2, 0), _store_defaults), ((0, 3, 0), _without_what_is_new))
+# (version, the function that converts settings of older versions to it). When a setting is renamed, keyframes and
+# drivers have to follow.
+STEPS = (((0, 2, 0), _store_defaults), ((0, 3, 0), _without_history))
 
 
 def migrate(old):
-    """Bring one scene's settings up to this version."""
+    """Convert one scene's settings to this version."""
     if not properties.is_stored(old):
         return
     for version, step in STEPS:
@@ -50,7 +48,7 @@ def migrate(old):
 
 @persistent
 def migrate_all(*_):
-    """A file was opened, or scenes came in from one."""
+    """Handler: a file was opened, or scenes were appended."""
     for scene in bpy.data.scenes:
         setup.adopt(scene)
         if scene.library is None:
@@ -59,21 +57,21 @@ def migrate_all(*_):
 
 @persistent
 def stamp_all(*_):
-    """The file is about to be saved, or to take scenes in: settings that were only just made get their version."""
+    """Handler: the file is about to be saved, or scenes to be appended. New settings get this version."""
     for scene in bpy.data.scenes:
         if scene.library is None and properties.is_stored(scene.afterlight):
             properties.stamp(scene.afterlight)
 
 
 def _once():
-    """For a file that was open before the extension was switched on."""
+    """Timer: a file was open before the extension was enabled."""
     migrate_all()
 
 
 HANDLERS = (
     ("load_post", migrate_all),
     ("save_pre", stamp_all),
-    # What is in the file already must not pass for what comes in.
+    # Settings of the file that is open must not be taken for appended ones of 0.1.0, which have no version.
     ("blend_import_pre", stamp_all),
     ("blend_import_post", migrate_all),
 )

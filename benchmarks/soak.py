@@ -145,7 +145,7 @@ class Soak:
             settings.enabled = ticked
 
     def _fail(self, *_, **__):
-        raise self.afterlight.light.GpuUnavailable("No GPU")
+        raise self.afterlight.gather.GpuUnavailable("No GPU")
 
     def _state(self):
         """All that is in the file, but for the images that Blender makes of renders, and what _frame() sets."""
@@ -158,7 +158,7 @@ class Soak:
 
     def _count_textures(self):
         """Note every texture that the light makes. They know no weak references: one that has but ours left is free."""
-        device = self.afterlight.light.device
+        device = self.afterlight.gather.device
         texture = device.texture
 
         def counted(*arguments, **options):

@@ -22,16 +22,18 @@ def _obstacle(scene):
         or helper.render.engine != engines.LIGHT
         or roles.camera(helper) is None
     ):
-        return {say("Afterlight's helper scene was deleted or changed"): "REPAIR"}
+        return {say("Afterlight's helper scene was deleted or changed. Press Repair"): "REPAIR"}
     if tree is None or not scene.render.use_compositing:
-        return {say("Compositing is switched off, so the light can't be added to the picture"): "REPAIR"}
+        return {say("Compositing is disabled, so no light can be added to the image. Press Repair"): "REPAIR"}
     if [layer.name for layer in helper.view_layers] != [layer.name for layer in scene.view_layers]:
-        return {say("View layers were added, removed or renamed since Indirect Light was ticked"): "REPAIR"}
+        return {
+            say("View layers were added, removed or renamed since Indirect Light was enabled. Press Repair"): "REPAIR"
+        }
     pictures = nodes.image_nodes(tree, scene)
     if not pictures:
         return {
             say(
-                'The compositor has no Render Layers node of "{}", so there is no picture to add light to. Add one '
+                'The compositor has no Render Layers node of "{}", so there is no image to add light to. Add one '
                 "and link its Image",
                 scene.name,
             ): ""
@@ -40,15 +42,15 @@ def _obstacle(scene):
     if not pictures:
         return {
             say(
-                'All Render Layers nodes of "{}" are muted, so there is no picture to add light to. Unmute one',
+                'All Render Layers nodes of "{}" are muted, so there is no image to add light to. Unmute one',
                 scene.name,
             ): ""
         }
     if not any(picture.id_data == tree for picture in pictures):
         return {
             say(
-                "All Render Layers nodes of this scene are inside node groups, and then Blender does not render "
-                "the scene. Add one at the top level of the compositor; it need not be linked"
+                "All Render Layers nodes of this scene are inside node groups, so Blender does not render the "
+                "scene. Add one outside of the groups. It does not have to be linked"
             ): "RENDER_LAYERS"
         }
     return {}
@@ -63,30 +65,30 @@ def _gaps(scene):
     if layers:  # only in our own tree is it known where the links led
         faults[
             say(
-                "The node that adds the light to {} was deleted, and the links of the image with it. Link the Image "
-                "of its Render Layers node again",
+                "The node that adds the light to {} was deleted, and with it the links of the image. Link the "
+                "Image of its Render Layers node again",
                 ", ".join(layers),
             )
         ] = "REPAIR" if own_tree.is_ours(scene, tree) else ""
     if any(nodes.adds_to_nothing(group, helper) for group in nodes.trees(tree)):
-        faults[say("The image is no longer linked to the node that adds the light to it")] = "REPAIR"
+        faults[say("The image is no longer linked to the node that adds the light to it. Press Repair")] = "REPAIR"
     unlit_layers = sorted({picture.layer for picture in pictures if nodes.lacks_light(picture)})
     if unlit_layers:
         faults[
             say(
-                "The compositor uses {} without the indirect light: a node of Afterlight was deleted, or a Render "
-                "Layers node is new",
+                "The compositor uses {} without the indirect light, because a node of Afterlight was deleted or "
+                "a Render Layers node was added. Press Repair",
                 ", ".join(unlit_layers),
             )
         ] = "REPAIR"
     if not any(nodes.shows(node, helper) for node in tree.nodes):
-        faults[say("Afterlight's Render Layers node was deleted from the compositor")] = "REPAIR"
+        faults[say("Afterlight's Render Layers node was deleted from the compositor. Press Repair")] = "REPAIR"
     elif not faults and not nodes.uses_light(tree, scene, helper) and not own_tree.is_untouched(scene, tree):
         faults[
             say(
-                'The compositor uses the Image of no Render Layers node of "{}", so the light is added to '
-                "nothing. Link the Image "
-                "of one, or the output Indirect of Afterlight's",
+                'The compositor does not use the Image of any Render Layers node of "{}", so there is no image '
+                "to add light to. Link the Image of one, or the output Indirect of Afterlight's own Render "
+                "Layers node",
                 scene.name,
             )
         ] = ""
@@ -94,20 +96,18 @@ def _gaps(scene):
         nodes.role(node) == "add" and nodes.adds_to_image_of(node, scene) and not nodes.light_input(node).links
         for node in nodes.all_nodes(tree)
     ):
-        faults[say("The indirect light is no longer linked to the node that adds it")] = "REPAIR"
+        faults[say("The indirect light is no longer linked to the node that adds it. Press Repair")] = "REPAIR"
     if view_scenes.is_incomplete(scene):
-        faults[
-            say("A scene through which Afterlight renders its views, or its node in the compositor, was deleted")
-        ] = "REPAIR"
+        faults[say("A helper scene for the views was deleted, or its node in the compositor. Press Repair")] = "REPAIR"
     if needs.glossy_light(scene) and any(optional_nodes.lacks_gloss(group, scene) for group in nodes.trees(tree)):
-        faults[say("The glossy light is no longer linked to the node that adds it")] = "REPAIR"
+        faults[say("The glossy light is no longer linked to the node that adds it. Press Repair")] = "REPAIR"
     if needs.denoise_node(scene) and any(optional_nodes.lacks_denoise(group, scene) for group in nodes.trees(tree)):
-        faults[say("The Denoise node of the indirect light was deleted")] = "REPAIR"
+        faults[say("The Denoise node of the indirect light was deleted. Press Repair")] = "REPAIR"
     if any(freestyle.lacks(group, scene) for group in nodes.trees(tree)):
-        faults[say("The node that lays the Freestyle lines over the light was deleted")] = "REPAIR"
+        faults[say("The node that draws the Freestyle lines over the light was deleted. Press Repair")] = "REPAIR"
     if any(
         mirror.use and not all(passes.is_on(layer, switch) for switch, _ in layer_passes.for_gather(scene, layer))
         for layer, mirror in zip(scene.view_layers, helper.view_layers)
     ):
-        faults[say("A pass that Afterlight reads was switched off")] = "REPAIR"
+        faults[say("A pass that Afterlight needs was disabled. Press Repair")] = "REPAIR"
     return faults

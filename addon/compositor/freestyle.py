@@ -16,8 +16,8 @@ from .nodes import RESULT, A, adds_to_image_of, linked_node, new_node, role, soc
 LINE_PASS = "freestyle_settings.as_render_pass", "Freestyle"
 FOREGROUND, BACKGROUND = "Foreground", "Background"
 
-
-_held = set()  # session_uids of scenes where suspend_drawing() was called in this process
+# session_uids of scenes where suspend_drawing() was called in this process; global, since undo may restore that state.
+_held = set()
 
 
 def needed(scene, layer):

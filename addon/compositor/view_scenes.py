@@ -193,12 +193,12 @@ def rendered_views(scene):
 def unusable(camera_object):
     """Why an object from the user's list can't be a view, as a sentence for people; empty if it can."""
     if camera_object is None:
-        return say("A view in the list has no camera. Choose one, or remove the line")
+        return say("A view in the list has no camera. Choose one, or remove the entry")
     if camera_object.type != "CAMERA":
-        return say('The view "{}" is no camera, and is left out. Choose a camera in its place', camera_object.name)
+        return say('The view "{}" is not a camera object and was left out. Choose a camera instead', camera_object.name)
     if camera_object.data.type not in {"PERSP", "ORTHO"}:
         return say(
-            'The view "{}" is panoramic, and is left out. Set its Lens Type to Perspective or Orthographic',
+            'The view "{}" is panoramic and was left out. Set its Lens Type to Perspective or Orthographic',
             camera_object.name,
         )
     return ""

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Problems of a scene that keep the light out of it, and the buttons that fix them."""
+"""What is wrong with a scene, and the buttons that fix it."""

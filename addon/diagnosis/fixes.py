@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What mends a scene at a click, where that is safe: each cure changes one thing that the user can see, and undo takes
-it back. checks.py says which scene needs which."""
+"""Fixes that are safe to apply at a click: each changes one thing that the user can see, and can be undone. checks.py
+says which scene needs which."""
 
 from dataclasses import dataclass
 
 import bpy
 
 from ..compositor import setup
-from ..host import roles
+from ..host import engines, roles
 
 
 @dataclass(frozen=True)
-class Cure:
-    """button: its text. tooltip: what else comes of it. apply: a function of Blender's context."""
+class Fix:
+    """button: its text. tooltip: the effects of a click. apply: the function that makes them, of Blender's context."""
 
     button: str
     tooltip: str
@@ -20,14 +20,15 @@ class Cure:
 
 
 def spare_camera(scene):
-    """A camera that the scene could look through, or None: one that is rendered before one that is hidden."""
+    """A camera that could be the scene's active one, if possible one that is not hidden in renders; None if there is
+    none."""
     cameras = [thing for thing in scene.objects if thing.type == "CAMERA" and thing.data.type in {"PERSP", "ORTHO"}]
     return min(cameras, key=lambda camera: camera.hide_render, default=None)
 
 
 def probe_volumes(scene):
-    """The light probe volumes that EEVEE renders with. The file's few probes are asked first: scenes have many objects,
-    and the panel asks at every redraw."""
+    """The light probe volumes that EEVEE renders with."""
+    # Files have few probes and many objects, and the panel asks at every redraw.
     if not any(probe.type == "VOLUME" for probe in bpy.data.lightprobes):
         return []
     return [
@@ -42,7 +43,7 @@ def _repair(context):
 
 
 def _eevee(context):
-    context.scene.render.engine = "BLENDER_EEVEE"
+    context.scene.render.engine = engines.EEVEE
 
 
 def _camera(context):
@@ -86,47 +87,46 @@ def _render_layers(context):
     setup.add_picture(context.scene)
 
 
-CURES = {
-    "REPAIR": Cure(
+FIXES = {
+    "REPAIR": Fix(
         "Repair",
-        "Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor",
+        "Restore the helper scene, passes and compositor nodes that Indirect Light needs",
         _repair,
     ),
-    "ENGINE": Cure(
+    "ENGINE": Fix(
         "Set Render Engine to EEVEE", "Render this scene with EEVEE. The settings of the other engine are kept", _eevee
     ),
-    "CAMERA": Cure("Use a Camera of the Scene", "Look through the first camera that the scene holds", _camera),
-    "LENS": Cure(
+    "CAMERA": Fix("Use a Camera of the Scene", "Make the first camera in the scene its active camera", _camera),
+    "LENS": Fix(
         "Set Lens Type to Perspective",
-        "Make the camera an ordinary one. Its panorama's settings are kept",
+        "Make it a perspective camera. Its panorama settings are kept",
         _perspective,
     ),
-    "VIEW_LAYER": Cure(
-        "Render This View Layer", "Tick Use for Rendering of the view layer that the window shows", _view_layer
-    ),
-    "STEREO": Cure("Turn Off Stereoscopy", "Render one view, that of the scene's camera", _no_stereo),
-    "SINGLE_LAYER": Cure(
+    "VIEW_LAYER": Fix("Render This View Layer", "Enable Use for Rendering for the active view layer", _view_layer),
+    "STEREO": Fix("Turn Off Stereoscopy", "Render a single view, that of the active camera", _no_stereo),
+    "SINGLE_LAYER": Fix(
         "Render All View Layers",
-        "Untick Render Single Layer. The render then takes as long as all view layers that are used",
+        "Disable Render Single Layer. All view layers that are used for rendering are then rendered",
         _all_layers,
     ),
-    "SEQUENCER": Cure(
+    "SEQUENCER": Fix(
         "Render the Scene",
-        "Untick Sequencer in Output properties > Post Processing. The strips are kept",
+        "Disable Sequencer in Output properties > Post Processing. The strips are kept",
         _no_sequencer,
     ),
-    "RAY_TRACING": Cure(
+    "RAY_TRACING": Fix(
         "Turn Off Ray Tracing",
-        "Turn off EEVEE's ray tracing, so that bounced light is counted once. Its reflections and refractions go too",
+        "Disable EEVEE's ray tracing, so that indirect light is not added twice. Its reflections and refractions are "
+        "disabled as well",
         _no_ray_tracing,
     ),
-    "PROBES": Cure(
-        "Disable Volumes in Renders", "Leave the light probe volumes out of renders. Their bakes are kept", _no_probes
+    "PROBES": Fix(
+        "Disable Volumes in Renders", "Disable the light probe volumes in renders. Their baked data is kept", _no_probes
     ),
-    "SHOW_LIT": Cure("Show That Scene", "Show the scene that this one serves to light in this window", _show_lit),
-    "RENDER_LAYERS": Cure(
+    "SHOW_LIT": Fix("Show That Scene", "Show the scene that this helper scene belongs to", _show_lit),
+    "RENDER_LAYERS": Fix(
         "Add Render Layers Node",
-        "Add a Render Layers node of this scene at the top level of the compositor, so that Blender renders it",
+        "Add a Render Layers node of this scene outside of node groups, so that Blender renders the scene",
         _render_layers,
     ),
 }

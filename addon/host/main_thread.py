@@ -28,9 +28,10 @@ RENDER_INTERVAL, IDLE_INTERVAL = 0.0, 0.1  # seconds between two turns: during a
 CALL_POLL_INTERVAL = 0.05  # seconds between two checks whether a waiting call is still wanted
 MUST_RUN_TIMEOUT = 0.5  # seconds that a mandatory call waits for the main thread
 
-_calls = queue.SimpleQueue()  # (Future, call)
-_takes_calls = False  # whether the main thread makes calls; global like the queue, since there is one main thread
-_stopped = ContextVar("stopped", default=lambda: False)  # says whether this thread's render is to stop
+_calls = queue.SimpleQueue()  # (Future, call); global, since there is one main thread
+_takes_calls = False  # whether the main thread makes calls; global like the queue
+# Says whether the render of the current thread is to stop; global, but each thread has its own value.
+_stopped = ContextVar("stopped", default=lambda: False)
 
 
 @contextmanager

@@ -6,8 +6,10 @@ from a handler, a timer, a driver or a thread, crashes Blender. Code that wants 
 postponed scenes are set up, or cleared, when the render is over.
 """
 
-_renders = []  # for each running render, whether it is locked; one may begin within another's handlers
-_waiting = set()  # session_uids of postponed scenes
+# For each running render, whether it is locked; one may begin within another's handlers. Global, and no part of
+# render/job.py, since lower layers ask before they change the file.
+_renders = []
+_waiting = set()  # session_uids of postponed scenes; global, since they wait for whichever render ends last
 
 
 def begin():

@@ -31,7 +31,7 @@ class _Report:
 
 _reports = {}  # by the scene's session_uid; global, since the panel shows them after the render
 _failed = False  # whether any render failed; global, since it decides the exit code of the process
-wants_stages = False  # set by benchmarks: wait for the GPU after each stage, so that times are the stage's own
+wants_stages = False  # global, set by benchmarks: wait for the GPU after each stage, so that times are the stage's own
 
 
 class Problem(Exception):
@@ -61,7 +61,7 @@ class Reporter:
             print_traceback()
             print_line(
                 scene,
-                say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
+                say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
             )
 
     def _fail(self, scene, text):
@@ -86,7 +86,7 @@ def fail(scene, text):
     if message(scene) == text:
         return False
     _report_of(scene).message = text
-    pop_up(text, say("Afterlight: the picture has no indirect light"))
+    pop_up(text, say("Afterlight: the image has no indirect light"))
     return True
 
 
@@ -183,7 +183,7 @@ def _exit_code():
     is printed and forgotten. So this ends the process at Python's own exit, which is nearly Blender's last act."""
     if not _failed:
         return
-    print_line("Afterlight: exit code 1, because a render was not lit", sys.stderr)
+    print_line("Afterlight: exit code 1, because a render has no indirect light", sys.stderr)
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()

@@ -16,7 +16,8 @@ HELPER, SCOUT, VIEW = "HELPER", "SCOUT", "VIEW"
 FRAME_SIDE = 4  # resolution stored in our scenes, in pixels, by which they are known; they render at the lit scene's
 MARK = "afterlight"  # custom property of our nodes, trees and cameras, and of the scenes of 0.1.0 to 0.3.0
 
-_seen = set()  # session_uids of scenes that were ours at some time in this process
+# session_uids of scenes that were ours at some time in this process; global, since the file alone can be made up.
+_seen = set()
 
 
 def is_helper(scene):

@@ -33,7 +33,7 @@ MAX_SEARCH_SECONDS = 0.005  # limit for removing abandoned folders; the rest is 
 # Whether files are addressed by a folder's descriptor, so that nobody can swap the folder in the meantime.
 BY_DESCRIPTOR = {os.open, os.stat, os.unlink, os.rmdir} <= os.supports_dir_fd and os.listdir in os.supports_fd
 
-_folders = []  # of _OwnFolder; the last one is written to
+_folders = []  # of _OwnFolder; the last one is written to. Global, as they live until Blender ends
 
 
 def new(number):

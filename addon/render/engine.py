@@ -76,8 +76,8 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
             self._fail(
                 depsgraph.scene,
                 say(
-                    "This engine works for Afterlight's helper scenes only. Set Render Engine "
-                    "to EEVEE and tick Indirect Light"
+                    "This render engine is only for Afterlight's helper scenes. Set Render Engine to EEVEE and "
+                    "enable Indirect Light"
                 ),
             )
             return
@@ -120,7 +120,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
             self._warn(
                 shot.scene,
                 say(
-                    "Indirect Light was unticked in the middle of a render: the frames from {} on are plain",
+                    "Indirect Light was disabled during a render. Frames from {} on have no indirect light",
                     shot.scene.frame_current,
                 ),
             )
@@ -176,8 +176,8 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
             self.report(
                 {"WARNING"},
                 say(
-                    "Afterlight: {} pixels of {} in {} are NaN or infinite. They send no indirect light; look for a "
-                    "material that divides by zero or a light of unbounded strength",
+                    "Afterlight: {} pixels of {} in {} are NaN or infinite and emit no indirect light. Look for a "
+                    "material that divides by zero, or a light of infinite strength",
                     count,
                     name.replace("_", " "),
                     shot.layer,
@@ -191,7 +191,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
             return None
         gloss = roughness.load(shot.frame.path, shot.layer, shot.window)
         if gloss is None:
-            self._warn(shot.scene, say("The last render has no passes for the glossy light. Press F12 to have it"))
+            self._warn(shot.scene, say("The last render has no passes for Glossy Light. Press F12 to render them"))
         return gloss
 
     def _let_through(self, shot, pictures):

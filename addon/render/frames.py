@@ -155,8 +155,8 @@ class KeptFrame:
         if wanted > self._wanted:
             warn(
                 say(
-                    "The last render had {} further views, and there are {} in the settings now. Press F12 for "
-                    "the light from all of them",
+                    "The last render had {} further views, but the settings now have {}. Press F12 to render all of "
+                    "them",
                     len(self.views),
                     wanted,
                 )

@@ -103,9 +103,7 @@ def _catch_up(waited):
     """Set up, or clear, the scenes with these session_uids, which had to wait for the end of a render."""
     for scene in [scene for scene in bpy.data.scenes if scene.session_uid in waited and scene.library is None]:
         if scene.afterlight.enabled and not roles.own(scene, roles.HELPER):
-            report.fail(
-                scene, say("Indirect Light was ticked in the middle of a render: it takes effect with the next one")
-            )
+            report.fail(scene, say("Indirect Light was enabled during a render. It takes effect in the next render"))
         (setup.connect if scene.afterlight.enabled else setup.disconnect)(scene)
 
 

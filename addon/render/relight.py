@@ -25,11 +25,11 @@ def obstacle(scene):
     """Why the light of `scene` can't be gathered again, as a sentence for people; empty where it can."""
     found = frames.kept(scene)
     if found is None:
-        return say("There is no render of this scene to light again. Press F12 first")
+        return say("There are no passes of a render of this scene. Press F12 first")
     if scene.render.engine != engines.EEVEE:
-        return say("The light is gathered from EEVEE's passes. Set Render Engine to EEVEE")
+        return say("Indirect Light needs EEVEE. Set Render Engine to EEVEE")
     if frame_store.size(found.path) != found.size or not all(frame_store.size(view.path) for view in found.views):
-        return say("The kept passes were deleted from the temporary folder. Press F12")
+        return say("The passes of the last render were deleted from the temporary folder. Press F12")
     if (found.window, found.full) != cameras.window(scene):
         return say("The resolution or the render region has changed since the last render. Press F12")
     if any(layer.use and layer.name not in found.layers for layer in scene.view_layers):
@@ -83,7 +83,7 @@ class AfterlightReplay(report.Reporter, bpy.types.RenderEngine):
         with self.failures_of(scene), main_thread.cancel_when(self.test_break):
             found = frames.kept(scene)
             if found is None:
-                raise Problem("There is no render of this scene to light again. Press F12 first")
+                raise Problem("There are no passes of a render of this scene. Press F12 first")
             self._hand_back(found, layer)
 
     def _hand_back(self, found, layer):
@@ -102,17 +102,17 @@ class AFTERLIGHT_OT_update(bpy.types.Operator):
     bl_idname = "afterlight.update"
     bl_label = "Update Indirect Light"
     bl_description = (
-        "Gather the light of the last render again with the settings as they are now, and composite the "
-        "picture. EEVEE does not render again, so what changed in the scene since does not show"
+        "Compute the indirect light of the last render again with the current settings, and composite "
+        "the image. EEVEE does not render again, so changes of the scene since then are not included"
     )
 
     @classmethod
     def poll(cls, context):
         scene = context.scene
         if not scene.afterlight.enabled:
-            cls.poll_message_set(say("Tick Indirect Light first"))
+            cls.poll_message_set(say("Enable Indirect Light first"))
         elif bpy.app.is_job_running("RENDER"):
-            cls.poll_message_set(say("A render is going on"))
+            cls.poll_message_set(say("A render is in progress. Wait until it ends"))
         elif problem := obstacle(scene):
             cls.poll_message_set(problem)
         else:
@@ -151,8 +151,8 @@ class AFTERLIGHT_OT_free_passes(bpy.types.Operator):
     bl_idname = "afterlight.free_passes"
     bl_label = "Free Kept Passes"
     bl_description = (
-        "Remove the passes of the last render from the temporary folder, where they are kept until "
-        "Blender ends. Updating the light then needs another render"
+        "Delete the passes of the last render from the temporary folder, where they are kept until "
+        "Blender quits. Updating the light then requires a new render"
     )
 
     @classmethod

@@ -29,15 +29,14 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
         job, start = jobs.current(scene), time.perf_counter()
         if not job.renders(scene):
             return
-        with (
-            self.failures_of(scene, self._warn),
-            main_thread.cancel_when(self.test_break),
-        ):  # the main view is lit without
+        # Without views the main view is still lit.
+        with self.failures_of(scene, self._warn), main_thread.cancel_when(self.test_break):
             job.reuse.begin_frame()
             main_thread.run(lambda: view_scenes.prepare(scene))
             # The views of a kept frame are used again; what keeps all light out, the engine of the light says.
-            if not job.replayed and not any(finding.fatal for finding in checks.findings(scene)):
-                self._place(job, scene, depsgraph)
+            if job.replayed or any(finding.fatal for finding in checks.findings(scene)):
+                return
+            self._place(job, scene, depsgraph)
         job.views_placed(scene, time.perf_counter() - start)
 
     def _place(self, job, scene, depsgraph):
@@ -57,7 +56,7 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
         paths, seen = look(placement.SCORING_PATHS)
         if paths is None:
             if not by_hand:
-                self._warn(scene, say("No views were placed: no surface lights what the camera sees"))
+                self._warn(scene, say("No views were placed, because no surface adds light to what the camera sees"))
             return
         if by_hand:
             shares = self._score(scene, depsgraph, paths, seen, geometry.cast)
@@ -100,8 +99,8 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
                 self._warn(
                     scene,
                     say(
-                        'The view "{}" sees no surface that lights the picture, and is left out. It may be inside '
-                        "a wall, or look away. Move it, or remove it from the list",
+                        'The view "{}" sees no surface that lights the image and was left out. It may be inside a wall '
+                        "or face away. Move it, or remove it from the list",
                         each.camera.name,
                     ),
                 )
@@ -113,35 +112,30 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
 
     def _choose(self, scene, depsgraph, paths, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
-        half_field, count, placement_before = (
-            view_cameras.HALF_FIELD,
-            scene.afterlight.view_count,
-            view_scenes.stored_placement(scene),
-        )
-        old = placement_before.poses if placement_before else []
+        half_field, count = view_cameras.HALF_FIELD, scene.afterlight.view_count
+        placed = view_scenes.stored_placement(scene)
+        old = placed.poses if placed else []
         shares = placement.coverage(paths, seen, cast, half_field, old)
         sees_nothing_new = old and shares[-1] <= shares[0]
         if (
-            placement_before is None
+            placed is None
             or len(old) > count
-            or shares[-1] < placement_before.coverage[-1] - placement.MAX_COVERAGE_LOSS
+            or shares[-1] < placed.coverage[-1] - placement.MAX_COVERAGE_LOSS
             or sees_nothing_new
         ):
             more, more_seen = look(placement.PLACEMENT_PATHS)
             poses = placement.place(more, more_seen, cast, half_field, count, rng, old) if more else []
             shares = placement.coverage(paths, seen, cast, half_field, poses)
-            placement_before = placement.Placement(poses, shares, placement.VIEW_CLEARANCE * paths.size)
-            main_thread.run(lambda: view_scenes.store_placement(scene, placement_before))
+            placed = placement.Placement(poses, shares, placement.VIEW_CLEARANCE * paths.size)
+            main_thread.run(lambda: view_scenes.store_placement(scene, placed))
             if not poses and shares[0] < 1 - placement.MAX_COVERAGE_LOSS:
-                self._warn(
-                    scene, say("No views were placed: there is no free place that shows more than the camera does")
-                )
+                self._warn(scene, say("No views were placed, because no free position shows more than the camera does"))
         far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * paths.size)
-        lens = view_cameras.wide_lens(scene, placement_before.clearance / 4, far)
+        lens = view_cameras.wide_lens(scene, placed.clearance / 4, far)
         main_thread.run(
             lambda: [
                 view_cameras.pose(view, scene, pose, lens)
-                for view, pose in zip(view_scenes.scenes(scene), placement_before.poses)
+                for view, pose in zip(view_scenes.scenes(scene), placed.poses)
             ]
         )
         return shares

@@ -74,7 +74,8 @@ def _channels(path):
         return channels
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
         raise Problem(
-            "The passes could not be read back from {} ({}). The disk of the temporary folder may be full",
+            "The passes could not be read back from {} ({}). The disk of the temporary folder may be full: "
+            "free some space there",
             path,
             one_line(error),
         ) from error

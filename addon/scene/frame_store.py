@@ -42,7 +42,7 @@ def save(scene: bpy.types.Scene) -> str:
         discard(path)
         if "does not have any image data" in str(error):
             raise Problem(
-                'There is no render of "{}" to light. Render that one, not the scene that serves to light it',
+                'There is no render of "{}". Render that scene instead of its helper scene',
                 scene.name,
             ) from error
         raise _not_written(one_line(error)) from error

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Afterlight in other languages. The English texts in the code are the keys, as in Blender's own translations.
 
-Blender translates names, tooltips and labels by itself. What is made of a text and values goes through say(). Another
-language is another module like de_DE.py; tests/test_words.py says what it lacks.
+Blender translates names, tooltips and labels by itself. Texts that contain values go through say(). To add a language,
+write a module like de_DE.py; tests/blender/test_words.py names the texts that it lacks.
 """
 
 import bpy
@@ -11,11 +11,11 @@ from bpy.app.translations import pgettext_rpt
 from . import de_DE
 
 LANGUAGES = {"de_DE": de_DE.TEXTS}
-CONTEXTS = "*", "Operator"  # Blender looks names of operators up in a place of their own
+CONTEXTS = "*", "Operator"  # Blender looks names of operators up in a context of their own
 
 
 def say(text, *values):
-    """A text for people in the language of Blender's interface, with the values in the place of its braces."""
+    """A text in the language of Blender's interface, with the values in place of its braces."""
     return pgettext_rpt(text).format(*values)
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panels, their buttons and the page of help."""
+"""Panels, operators and the help page."""

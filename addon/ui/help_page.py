@@ -1,15 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of help: a file of the package, so that it is there without a network and speaks of this very version.
+"""The help page: a file of the package, so that it needs no network and matches this version.
 
-It is HTML because that alone opens at a section, in every browser; it also answers Blender's own right click > Online
-Manual.
+It is HTML because browsers open HTML at a section. Blender's right click > Online Manual opens it as well.
 """
 
 from pathlib import Path
 
 import bpy
 
+from ..parameters import PARAMETERS
+from ..properties import AfterlightSettings, AfterlightView
+
 PATH = Path(__file__).resolve().parents[2] / "docs" / "help.html"
+# The section of what is not in the table of parameters. Of several patterns that match, Blender takes the first.
+OTHERS = (
+    (f"bpy.types.{AfterlightSettings.__name__}.enabled".lower(), "#enabled"),
+    (f"bpy.types.{AfterlightSettings.__name__}.view_camera*".lower(), "#views"),
+    (f"bpy.types.{AfterlightView.__name__}.*".lower(), "#views"),
+    (f"bpy.types.{AfterlightSettings.__name__}*".lower(), ""),
+    ("bpy.ops.afterlight.preset*", "#presets"),
+    ("bpy.ops.afterlight.mend*", "#messages"),
+    ("bpy.ops.afterlight.repair*", "#messages"),
+    ("bpy.ops.afterlight.update*", "#update"),
+    ("bpy.ops.afterlight.free_passes*", "#update"),
+    ("bpy.ops.afterlight.place_views*", "#views"),
+    ("bpy.ops.afterlight.view_*", "#views"),
+    ("bpy.ops.afterlight.*", "#menu"),
+)
 
 
 def address(section=""):
@@ -18,23 +35,10 @@ def address(section=""):
 
 
 def manual_map():
-    """What Blender asks add-ons for on right click > Online Manual: how URLs begin, and (pattern, end) of each."""
-    from ..properties import PARAMETERS, AfterlightSettings
-
-    names = ["enabled", "use_viewport", *(parameter.name for parameter in PARAMETERS)]
+    """Blender's map for right click > Online Manual: how all URLs begin, and (pattern, rest of the URL) pairs."""
+    names = [parameter.name for parameter in PARAMETERS]
     sections = [(f"bpy.types.{AfterlightSettings.__name__}.{name}".lower(), f"#{name}") for name in names]
-    return PATH.as_uri(), (
-        *sections,
-        (f"bpy.types.{AfterlightSettings.__name__}*".lower(), ""),
-        ("bpy.ops.afterlight.preset_add*", "#presets"),
-        ("bpy.ops.afterlight.mend*", "#messages"),
-        ("bpy.ops.afterlight.repair*", "#messages"),
-        ("bpy.ops.afterlight.update*", "#update"),
-        ("bpy.ops.afterlight.free_passes*", "#update"),
-        ("bpy.ops.afterlight.place_views*", "#views"),
-        ("bpy.ops.afterlight.view_*", "#views"),
-        ("bpy.ops.afterlight.*", "#menu"),
-    )
+    return PATH.as_uri(), (*sections, *OTHERS)
 
 
 def register():

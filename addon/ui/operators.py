@@ -1,66 +1,67 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The buttons: what mends a scene, presets, and settings from scene to scene."""
+"""The buttons that fix a scene, load and keep presets, and open the help."""
 
 import webbrowser
 from pathlib import Path
 
 import bpy
 from bl_operators.presets import AddPresetBase
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import EnumProperty, StringProperty
 from bpy.types import Operator
-from bpy_extras import anim_utils
 
 from ..compositor import faults, setup
-from ..diagnosis.fixes import CURES
-from ..host import put_back, roles
-from ..properties import PARAMETERS
+from ..diagnosis.fixes import FIXES
+from ..host import put_back
+from ..parameters import PARAMETERS
 from ..translations import say
 from . import help_page
 
 
-class _OnEditableScene:
+class OnEditableScene:
+    """An operator that changes the scene, and can be undone."""
+
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
     def poll(cls, context):
         if context.scene is None or context.scene.library is not None:
-            cls.poll_message_set(say("The scene is linked from another file and can't be changed here"))
+            cls.poll_message_set(say("The scene is linked from another file and cannot be edited here"))
             return False
         return True
 
 
-class AFTERLIGHT_OT_mend(_OnEditableScene, Operator):
+class AFTERLIGHT_OT_mend(OnEditableScene, Operator):
     bl_idname = "afterlight.mend"
-    bl_label = "Mend Scene for Indirect Light"
+    bl_label = "Fix Scene for Indirect Light"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     cure: EnumProperty(
-        name="Cure",
+        name="Fix",
         description="What to change in the scene",
         options={"HIDDEN"},
-        items=[(name, cure.button, cure.tooltip) for name, cure in CURES.items()],
+        items=[(name, fix.button, fix.tooltip) for name, fix in FIXES.items()],
     )
 
     @classmethod
     def description(cls, _context, properties):
-        return say(CURES[properties.cure].tooltip)
+        return say(FIXES[properties.cure].tooltip)
 
     def execute(self, context):
-        CURES[self.cure].apply(context)
+        FIXES[self.cure].apply(context)
         return {"FINISHED"}
 
 
-class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
+class AFTERLIGHT_OT_repair(OnEditableScene, Operator):
     bl_idname = "afterlight.repair"
     bl_label = "Repair Indirect Light"
-    bl_description = "Put back what Indirect Light needs: the helper scene, the passes and the nodes in the compositor"
+    bl_description = "Restore the helper scene, passes and compositor nodes that Indirect Light needs"
 
     @classmethod
     def poll(cls, context):
         if not super().poll(context):
             return False
         if not context.scene.afterlight.enabled:
-            cls.poll_message_set(say("Tick Indirect Light first"))
+            cls.poll_message_set(say("Enable Indirect Light first"))
             return False
         return True
 
@@ -71,99 +72,52 @@ class AFTERLIGHT_OT_repair(_OnEditableScene, Operator):
         return {"FINISHED"}
 
 
-class AFTERLIGHT_OT_copy_settings(_OnEditableScene, Operator):
-    bl_idname = "afterlight.copy_settings"
-    bl_label = "Copy Indirect Light Settings"
-    bl_description = (
-        "Give this scene's settings of Indirect Light to other scenes, as they are in this frame: "
-        "keyframes and drivers stay here"
-    )
-
-    scene: StringProperty(name="Scene", description="The scene that gets the settings, all other scenes where empty")
-    enable: BoolProperty(name="Tick Too", description="Tick Indirect Light in those scenes as well")
-
-    @classmethod
-    def poll(cls, context):
-        if not super().poll(context):
-            return False
-        if not other_scenes(context.scene):
-            cls.poll_message_set(say("The file has no other scene that can be changed"))
-            return False
-        return True
-
-    def execute(self, context):
-        others = [scene for scene in other_scenes(context.scene) if self.scene in ("", scene.name)]
-        if not others:
-            self.report({"ERROR"}, say('There is no other scene "{}" that can be changed', self.scene))
-            return {"CANCELLED"}
-        for scene in others:
-            for parameter in PARAMETERS:
-                setattr(scene.afterlight, parameter.name, getattr(context.scene.afterlight, parameter.name))
-            if self.enable and not scene.afterlight.enabled:
-                scene.afterlight.enabled = True
-            _warn_of_animation(self, scene)
-        self.report({"INFO"}, say("Settings copied to {}", ", ".join(scene.name for scene in others)))
-        return {"FINISHED"}
-
-
-class AFTERLIGHT_OT_reset(_OnEditableScene, Operator):
-    bl_idname = "afterlight.reset"
-    bl_label = "Reset Indirect Light Settings"
-    bl_description = "Set everything in this panel but its checkbox to the defaults. Keyframes and drivers stay"
-
-    def execute(self, context):
-        for parameter in PARAMETERS:
-            context.scene.afterlight.property_unset(parameter.name)
-        setup.connect_if_enabled(context.scene)
-        _warn_of_animation(self, context.scene)
-        return {"FINISHED"}
-
-
 class AFTERLIGHT_OT_help(Operator):
     bl_idname = "afterlight.help"
     bl_label = "Indirect Light Help"
-    bl_description = "Show the page of help that came with the extension in the web browser. It needs no network"
+    bl_description = "Open the help page of this version in the web browser. No internet connection is needed"
 
-    section: StringProperty(name="Section", description="Where to open the page", options={"HIDDEN", "SKIP_SAVE"})
+    section: StringProperty(name="Section", description="Section to open", options={"HIDDEN", "SKIP_SAVE"})
 
     def execute(self, _context):
         webbrowser.open(help_page.address(self.section))
-        # Some browsers are shut out of the folder where extensions live, and say nothing that Python could hear.
-        self.report({"INFO"}, say("Help is in {}", help_page.PATH))
+        # Some browsers may not read the folder of extensions, and give no error that Python could see.
+        self.report({"INFO"}, say("Help page: {}", help_page.PATH))
         return {"FINISHED"}
 
 
-# Where Blender looks for presets, in each of its folders for them.
+# The folder of our presets, in each of Blender's folders for presets.
 SUBDIR = "afterlight"
 # Presets that come with the add-on. The numbers are the means of docs/measured/accuracy.md, of light and of frames.
 PRESETS = Path(__file__).resolve().parents[1] / "presets" / "afterlight"
 TOOLTIPS = {
     "draft": lambda: say(
-        "To set up the light of a shot: 4 views at most, 3 bounces. Its light is off by 14 % in the sample scenes, "
-        "where EEVEE's ray tracing at its best is off by 61 %. Without a graphics card a frame takes 2.5 times as long "
-        "as EEVEE's own 16 samples"
+        "For lighting a shot: up to 4 views, 3 bounces. In the sample scenes the indirect light has an error of 14 %; "
+        "EEVEE's ray tracing has 61 % at its best. Without a graphics card a frame takes 2.5 times as long as EEVEE "
+        "alone with 16 samples"
     ),
     "paper": lambda: say(
-        "As the paper has it: one bounce between what the camera sees, through whatever stands in between, and no "
-        "further views. Its light is off by 60 % in the sample scenes; a frame takes hardly longer than EEVEE's own"
+        "The published method: one bounce between surfaces that the camera sees, without occlusion or further views. "
+        "In the sample scenes the indirect light has an error of 60 %; a frame takes little longer than with EEVEE "
+        "alone"
     ),
     "production": lambda: say(
-        "For final pictures: 7 views at most, 4 bounces. Its light is off by 10 % in the sample scenes, where EEVEE's "
-        "ray tracing at its best is off by 61 %. Without a graphics card a frame takes 3.2 times as long as EEVEE's own"
-        " 16 samples"
+        "For final images: up to 7 views, 4 bounces. In the sample scenes the indirect light has an error of 10 %; "
+        "EEVEE's ray tracing has 61 % at its best. Without a graphics card a frame takes 3.2 times as long as EEVEE "
+        "alone with 16 samples"
     ),
     "reference": lambda: say(
-        "To judge the others by: 9 views at most, 8 bounces, four times the draws, and every pixel gathers for itself"
+        "Ground truth for comparing presets: up to 9 views, 8 bounces, four times the draws, full resolution"
     ),
 }
 
 
-class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
-    """As Blender loads presets, with a tooltip for each that comes with the add-on."""
+class AFTERLIGHT_OT_preset(OnEditableScene, Operator):
+    """Blender's own operator for presets, with tooltips, with limits to what it runs, and without half a preset."""
 
     bl_idname = "afterlight.preset"
     bl_label = "Load Indirect Light Preset"
-    bl_description = "Set everything in this panel but Strength and Seed as the preset has it"
+    bl_description = "Load the settings of this preset. Strength, Viewport and the seed are kept"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
@@ -178,8 +132,8 @@ class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
             self.report(
                 {"ERROR"},
                 say(
-                    '"{}" does not lie in a folder of Indirect Light presets, and is not run. Choose '
-                    "one from the panel's list of presets",
+                    '"{}" is not in a folder of Indirect Light presets and was not run. Choose a preset from the list '
+                    "in the panel",
                     self.filepath,
                 ),
             )
@@ -193,7 +147,7 @@ class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
             self.report(
                 {"ERROR"},
                 say(
-                    "The preset has an error, and the settings stay as they were: {}",
+                    "The preset has an error and no setting was changed: {}",
                     f"{type(error).__name__}: {error}",
                 ),
             )
@@ -205,19 +159,14 @@ class AFTERLIGHT_OT_preset(_OnEditableScene, Operator):
 class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
     bl_idname = "afterlight.preset_add"
     bl_label = "Add Indirect Light Preset"
-    bl_description = "Keep the settings of Indirect Light as a preset, or remove one"
+    bl_description = "Save the Indirect Light settings as a preset, or remove a preset"
     preset_menu = "AFTERLIGHT_PT_presets"
     preset_subdir = SUBDIR
     preset_defines = ["settings = bpy.context.scene.afterlight"]
-    # Strength and seed belong to the shot, not to the quality.
-    preset_values = [
-        f"settings.{parameter.name}"
-        for parameter in PARAMETERS
-        if parameter.name not in {"strength", "seed", "use_animated_seed"}
-    ]
+    preset_values = [f"settings.{parameter.name}" for parameter in PARAMETERS if parameter.in_presets]
 
     def execute(self, context):
-        """As Blender does it; but a name is no path to other files, and a disk that is full is no traceback."""
+        """Like Blender's own, but names cannot be paths to other files, and a full disk gives a message."""
         if self.remove_name and Path(self.name).name != self.name:
             self.report({"ERROR"}, say('There is no preset "{}"', self.name))
             return {"CANCELLED"}
@@ -230,8 +179,8 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
             self.report(
                 {"ERROR"},
                 say(
-                    "The preset could not be written ({}). Free some space on the disk of "
-                    "Blender's user folder, or allow writing there",
+                    "The preset could not be saved ({}). Free some space on the disk of Blender's user folder, or "
+                    "make the folder writable",
                     error,
                 ),
             )
@@ -242,7 +191,7 @@ class AFTERLIGHT_OT_preset_add(AddPresetBase, Operator):
 
 
 def _is_preset(path):
-    """Whether a file lies in one of the folders that Blender looks for our presets in. Links are followed."""
+    """Whether a path is that of a file in one of the folders of our presets. Links are followed."""
     path = Path(path).resolve()
     return (
         path.suffix == ".py"
@@ -251,44 +200,9 @@ def _is_preset(path):
     )
 
 
-def other_scenes(scene):
-    """The scenes of the file that settings can be copied to."""
-    return [
-        other for other in bpy.data.scenes if other != scene and other.library is None and not roles.is_helper(other)
-    ]
-
-
-def _warn_of_animation(operator, scene):
-    animated = [parameter.label for parameter in PARAMETERS if parameter.name in _animated(scene)]
-    if animated:
-        operator.report(
-            {"WARNING"},
-            say(
-                '{} of "{}" has keyframes or a driver, which set it again in every frame',
-                ", ".join(map(say, animated)),
-                scene.name,
-            ),
-        )
-
-
-def _animated(scene):
-    """Names of the settings of `scene` that keyframes or drivers set."""
-    data = scene.animation_data
-    if data is None:
-        return set()
-    curves = list(data.drivers)
-    if data.action and (bag := anim_utils.action_get_channelbag_for_slot(data.action, data.action_slot)):
-        curves += bag.fcurves
-    return {
-        curve.data_path.removeprefix("afterlight.") for curve in curves if curve.data_path.startswith("afterlight.")
-    }
-
-
 CLASSES = (
     AFTERLIGHT_OT_mend,
     AFTERLIGHT_OT_repair,
-    AFTERLIGHT_OT_copy_settings,
-    AFTERLIGHT_OT_reset,
     AFTERLIGHT_OT_help,
     AFTERLIGHT_OT_preset,
     AFTERLIGHT_OT_preset_add,

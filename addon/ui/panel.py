@@ -1,21 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel under EEVEE's own in the Render properties, and the menu that it shares with the top bar."""
+"""The panel below EEVEE's own in the Render properties, and its menu, which is in the top bar as well."""
 
 from pathlib import Path
 
-import blf
 import bpy
 from bl_ui.utils import PresetPanel
 from bpy.types import Menu, Panel
 
-from .. import gather
+from .. import parameters, properties
 from ..diagnosis import checks
-from ..diagnosis.fixes import CURES
+from ..diagnosis.fixes import FIXES
 from ..host import report, roles
-from ..properties import light_settings
 from ..translations import say
 from ..viewport import draw_handlers as viewports
-from . import operators
+from . import transfer
+from .drawing import InRenderProperties, draw_settings, draw_text, draw_value
 
 FOLDER = str(Path(__file__).parents[1])
 
@@ -34,7 +33,7 @@ class AFTERLIGHT_MT_copy_settings(Menu):
         layout = self.layout
         layout.operator("afterlight.copy_settings", text="To All Scenes").scene = ""
         layout.separator()
-        for scene in operators.other_scenes(context.scene):
+        for scene in transfer.other_scenes(context.scene):
             layout.operator("afterlight.copy_settings", text=scene.name, translate=False).scene = scene.name
 
 
@@ -55,32 +54,20 @@ class AFTERLIGHT_MT_indirect_light(Menu):
 
 
 def draw_in_top_bar(menu, _context):
-    """In the menu Render, where Blender's search (F3) finds what the menu holds: it looks through no panel."""
+    """In the menu Render: Blender's search (F3) finds operators of menus, but not of panels."""
     menu.layout.separator()
     menu.layout.menu("AFTERLIGHT_MT_indirect_light")
 
 
 def draw_in_viewport_shading(menu, context):
-    """In the pop-over of rendered viewports."""
-    if context.space_data.shading.type == "RENDERED" and _InRenderProperties.poll(context):
+    """In the pop-over of viewports with Rendered shading."""
+    if context.space_data.shading.type == "RENDERED" and InRenderProperties.poll(context):
         row = menu.layout.row()
         row.active = context.scene.afterlight.enabled
         row.prop(context.scene.afterlight, "use_viewport", text="Indirect Light")
 
 
-class _InRenderProperties:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-
-    @classmethod
-    def poll(cls, context):
-        # Where the box is ticked the panel stays, to say that another engine can't be lit.
-        scene = context.scene
-        return scene.render.engine == "BLENDER_EEVEE" or scene.afterlight.enabled or roles.is_helper(scene)
-
-
-class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
+class AFTERLIGHT_PT_indirect_light(InRenderProperties, Panel):
     bl_label = "Indirect Light"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -96,24 +83,23 @@ class AFTERLIGHT_PT_indirect_light(_InRenderProperties, Panel):
         layout.separator(factor=0.5)  # from the handle by which panels are moved
 
     def draw(self, context):
-        layout, settings = self.layout, context.scene.afterlight
+        layout, scene = self.layout, context.scene
+        settings = scene.afterlight
         layout.use_property_split, layout.use_property_decorate = True, True
-        if settings.enabled or roles.is_helper(context.scene):
-            for finding in checks.findings(context.scene):
+        if settings.enabled or roles.is_helper(scene):
+            for finding in checks.findings(scene):
                 _draw_finding(layout, finding, context)
         column = layout.column()
         column.active = settings.enabled
-        column.prop(settings, "method")
-        column.prop(settings, "strength")
-        column.prop(settings, "use_viewport")
-        if settings.enabled and settings.use_viewport and (problem := viewports.problem(context.scene)):
-            _draw_text(layout, problem, "ERROR", context)
+        draw_settings(column, settings, parameters.MAIN)
+        if properties.is_shown(settings) and (problem := viewports.problem(scene)):
+            draw_text(layout, problem, "ERROR", context)
         row = layout.row(align=True)
         row.operator("afterlight.update", icon="FILE_REFRESH")
         row.operator("afterlight.free_passes", icon="TRASH", text="")
 
 
-class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
+class AFTERLIGHT_PT_sampling(InRenderProperties, Panel):
     bl_label = "Sampling"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
     bl_order = 1
@@ -122,29 +108,10 @@ class AFTERLIGHT_PT_sampling(_InRenderProperties, Panel):
         layout, settings = self.layout, context.scene.afterlight
         layout.use_property_split, layout.use_property_decorate = True, True
         layout.active = settings.enabled
-        column = layout.column()
-        column.prop(settings, "start")
-        if settings.method == "PAPER":
-            column.prop(settings, "samples")
-            column.prop(settings, "radius")
-        else:
-            column.prop(settings, "draws")
-            column.prop(settings, "accumulate")
-            column.prop(settings, "use_history")
-            column.prop(settings, "denoise")
-            column.prop(settings, "bounces")
-            column.prop(settings, "use_visibility")
-            row = column.row()
-            row.active = settings.use_visibility
-            row.prop(settings, "use_world_shadow")
-            column.prop(settings, "use_glossy")
-        column = layout.column(align=True)
-        column.active = not gather.is_exact(light_settings(settings, 0))
-        column.prop(settings, "seed")
-        column.prop(settings, "use_animated_seed")
+        draw_settings(layout.column(), settings, parameters.SAMPLING)
 
 
-class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
+class AFTERLIGHT_PT_last_render(InRenderProperties, Panel):
     bl_label = "Last Render"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
     bl_order = 3
@@ -157,56 +124,25 @@ class AFTERLIGHT_PT_last_render(_InRenderProperties, Panel):
     def draw(self, context):
         layout, scene = self.layout, context.scene
         if scene.afterlight.report:
-            _draw_text(layout, scene.afterlight.report, "ERROR", context)
+            draw_text(layout, scene.afterlight.report, "ERROR", context)
         stages = report.stages(scene)
         if stages:
             column = layout.column(align=True)
             for stage, seconds in stages.items():
-                _draw_row(column, say(report.label(stage)), f"{seconds:.3f} s")
+                draw_value(column, say(report.label(stage)), f"{seconds:.3f} s")
             column.separator()
-            _draw_row(column, say("Total time"), f"{sum(stages.values()):.3f} s")
+            draw_value(column, say("Total time"), f"{sum(stages.values()):.3f} s")
         if memory := report.memory(scene):
             column = layout.column(align=True)
             for name, size in memory.items():
-                _draw_row(column, say(report.label(name)), f"{size / 2**20:.1f} MiB")
-
-
-def wrapped(text, fits):
-    """The lines of a text, which labels do not break by themselves. fits(line): whether a line is short enough."""
-    lines = [""]
-    for word in text.split():
-        longer = f"{lines[-1]} {word}".lstrip()
-        if fits(longer) or not lines[-1]:
-            lines[-1] = longer
-        else:
-            lines.append(word)
-    return lines
-
-
-def _draw_row(layout, name, value):
-    split = layout.split(factor=0.6)
-    split.label(text=name, translate=False)
-    right = split.row()
-    right.alignment = "RIGHT"
-    right.label(text=value, translate=False)
+                draw_value(column, say(report.label(name)), f"{size / 2**20:.1f} MiB")
 
 
 def _draw_finding(layout, finding, context):
     box = layout.box()
-    _draw_text(box, finding.text, "ERROR" if finding.fatal else "INFO", context)
-    if finding.cure:
-        box.operator("afterlight.mend", text=CURES[finding.cure].button).cure = finding.cure
-
-
-def _draw_text(layout, text, icon, context):
-    scale = context.preferences.system.ui_scale
-    blf.size(0, context.preferences.ui_styles[0].widget.points * scale)
-    width = context.region.width - 80 * scale  # icon, margins of panel and box, scroll bar
-    column = layout.column(align=True)
-    column.scale_y = 0.8
-    for line in wrapped(text, lambda line: blf.dimensions(0, line)[0] <= width):
-        column.label(text=line, icon=icon, translate=False)
-        icon = "BLANK1"
+    draw_text(box, finding.text, "ERROR" if finding.fatal else "INFO", context)
+    if finding.fix:
+        box.operator("afterlight.mend", text=FIXES[finding.fix].button).cure = finding.fix
 
 
 CLASSES = (

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Further views in the Render properties: which, how many, how much of the light they see; and the buttons for that."""
+"""The sub-panel Views: which views there are, how much of the light they see, and the buttons of the list."""
 
 import bpy
 import numpy as np
 from bpy.types import Operator, Panel, UIList
 from mathutils import Matrix
 
+from .. import parameters
 from ..compositor import setup, view_scenes
 from ..host import report
-from ..scene import view_cameras
+from ..scene import needs, view_cameras
 from ..translations import say
-from . import panel
-from .operators import _OnEditableScene as OnEditableScene
+from .drawing import InRenderProperties, draw_settings, draw_text, draw_value
+from .operators import OnEditableScene
 
 
 class AFTERLIGHT_UL_views(UIList):
@@ -20,24 +21,21 @@ class AFTERLIGHT_UL_views(UIList):
         layout.prop(item, "camera", text="", emboss=False, icon="ERROR" if problem else "CAMERA_DATA")
 
 
-class AFTERLIGHT_PT_views(panel._InRenderProperties, Panel):
+class AFTERLIGHT_PT_views(InRenderProperties, Panel):
     bl_label = "Views"
     bl_parent_id = "AFTERLIGHT_PT_indirect_light"
     bl_order = 2
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and context.scene.afterlight.method != "PAPER"  # which has one view
+        return super().poll(context) and bool(parameters.rows(context.scene.afterlight, parameters.VIEWS))
 
     def draw(self, context):
         layout, scene = self.layout, context.scene
         settings = scene.afterlight
         layout.use_property_split, layout.use_property_decorate = True, False
         layout.active = settings.enabled
-        layout.prop(settings, "views")
-        column = layout.column()
-        column.active = settings.views == "AUTOMATIC"
-        column.prop(settings, "view_count")
+        draw_settings(layout.column(), settings, parameters.VIEWS)
         if settings.views == "AUTOMATIC":
             layout.operator("afterlight.place_views")
         elif settings.views == "MANUAL":
@@ -49,19 +47,19 @@ class AFTERLIGHT_PT_views(panel._InRenderProperties, Panel):
         if settings.views != "CAMERA" and (found := report.coverage(scene)):
             shares, seconds = found
             column = layout.column(align=True)
-            panel._draw_row(column, say("Seen by the Camera"), f"{shares[0]:.0%}")
-            panel._draw_row(column, say("Seen with {} Views", len(shares) - 1), f"{shares[-1]:.0%}")
-            panel._draw_row(column, say("Placing"), f"{seconds:.2f} s")
+            draw_value(column, say("Seen by the Camera"), f"{shares[0]:.0%}")
+            draw_value(column, say("Seen with {} Views", len(shares) - 1), f"{shares[-1]:.0%}")
+            draw_value(column, say("Placing"), f"{seconds:.2f} s")
         for text in report.warnings(scene):
-            panel._draw_text(layout, text, "INFO", context)
+            draw_text(layout, text, "INFO", context)
 
 
 class AFTERLIGHT_OT_place_views(OnEditableScene, Operator):
     bl_idname = "afterlight.place_views"
     bl_label = "Keep Views as Cameras"
     bl_description = (
-        "Make a camera for each view of the last render and list them, to see, adjust and keep them: "
-        "they are the same in every frame and on every computer of a farm from then on"
+        "Create a camera for each automatic view of the last render and set Views to Manual with these cameras, so "
+        "that you can adjust them. From then on all frames have the same views, on every computer of a render farm"
     )
 
     @classmethod
@@ -70,7 +68,9 @@ class AFTERLIGHT_OT_place_views(OnEditableScene, Operator):
             return False
         found = view_scenes.stored_placement(context.scene) if view_scenes.placement_scene(context.scene) else None
         if found is None or not found.poses:
-            cls.poll_message_set(say("No views have been placed in this scene. Set Views to Automatic and render"))
+            cls.poll_message_set(
+                say("No views have been placed in this scene yet. Set Views to Automatic and press F12")
+            )
             return False
         return True
 
@@ -95,14 +95,14 @@ class AFTERLIGHT_OT_place_views(OnEditableScene, Operator):
 class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
     bl_idname = "afterlight.view_add"
     bl_label = "Add View"
-    bl_description = "Add the selected cameras to the list of views, or an empty line where none is selected"
+    bl_description = "Add the selected cameras to the list of views, or an empty slot if no camera is selected"
 
     @classmethod
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if len(context.scene.afterlight.view_cameras) >= view_scenes.MAX_VIEWS:
-            cls.poll_message_set(say("There can be {} views at most", view_scenes.MAX_VIEWS))
+        if len(context.scene.afterlight.view_cameras) >= needs.MAX_VIEWS:
+            cls.poll_message_set(say("There can be at most {} views. Remove one first", needs.MAX_VIEWS))
             return False
         return True
 
@@ -110,7 +110,7 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
         scene, settings = context.scene, context.scene.afterlight
         listed = {each.camera for each in settings.view_cameras} | {scene.camera}
         chosen = [thing for thing in context.selected_objects if thing.type == "CAMERA" and thing not in listed]
-        for camera in (chosen or [None])[: view_scenes.MAX_VIEWS - len(settings.view_cameras)]:
+        for camera in (chosen or [None])[: needs.MAX_VIEWS - len(settings.view_cameras)]:
             settings.view_cameras.add().camera = camera
         settings.view_camera = len(settings.view_cameras) - 1
         setup.connect_if_enabled(scene)
@@ -120,7 +120,7 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
 class AFTERLIGHT_OT_view_remove(OnEditableScene, Operator):
     bl_idname = "afterlight.view_remove"
     bl_label = "Remove View"
-    bl_description = "Take the active line out of the list of views. The camera stays in the scene"
+    bl_description = "Remove the active camera from the list of views. It stays in the scene"
 
     @classmethod
     def poll(cls, context):

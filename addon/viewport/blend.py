@@ -16,7 +16,8 @@ from ..gather import device
 
 VERTICES = (-1, -1), (3, -1), (-1, 3)  # of a triangle that covers the whole frame
 
-_picture = None  # framebuffer of the engine's image, of the viewport that is being drawn
+# Framebuffer of the engine's image, of the viewport that is being drawn; global, since Blender makes two calls.
+_picture = None
 
 
 def remember():

@@ -5,7 +5,7 @@ import blf
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import gather
+from .. import gather, properties
 from ..diagnosis import checks
 from ..host import events, main_thread, report, roles
 from ..translations import say
@@ -15,10 +15,11 @@ from .view_cache import ViewCache
 
 TEXT_POINTS = 11  # height of the text
 
+# Global, since Blender calls us once for each region that it draws, and keeps nothing for us with it.
 _region_lights, _view_caches = {}, {}  # by the address of the region, and of its 3D viewport
-_waiting = set()  # addresses of regions to be drawn again
-_refused = {}  # why a scene's viewports are not lit, by its session_uid
-_handles = []
+_waiting = set()  # global: addresses of regions to be drawn again
+_refused = {}  # global: why a scene's viewports are not lit, by its session_uid
+_handles = []  # global: Blender's handles of our functions, until they are removed
 
 
 def problem(scene):
@@ -27,7 +28,7 @@ def problem(scene):
     if scene.session_uid in _refused:
         return _refused[scene.session_uid]
     if checks.counts_twice(scene):
-        return say("EEVEE's ray tracing already adds bounced light: ours would count it twice")
+        return say("EEVEE's ray tracing already adds indirect light. Disable either ray tracing or Indirect Light")
     return ""
 
 
@@ -85,7 +86,7 @@ def _after_drawing():
         report.print_traceback()
         _refuse(
             scene,
-            say("Afterlight met an error of its own ({}). The terminal has the details; please report them", error),
+            say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
         )
     finally:
         blend.forget()
@@ -182,7 +183,13 @@ def forget(*_):
 HANDLERS = (("load_pre", forget),)
 
 
+def _changed(_scene):
+    redraw()
+
+
 def register():
+    properties.on_change.append(_changed)
+    properties.on_switch.append(switched)
     scene_changes.register()
     events.listen(HANDLERS)
     if not bpy.app.background:
@@ -195,5 +202,7 @@ def unregister():
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
     events.ignore(HANDLERS)
     scene_changes.unregister()
+    properties.on_switch.remove(switched)
+    properties.on_change.remove(_changed)
     forget()
     blend.release()

@@ -19,8 +19,8 @@ class ChangeCounts:
     geometry: int = 0
 
 
-_counts = {}  # by the scene's session_uid
-_states = {}  # last result of _state(), by the same
+_counts = {}  # by the scene's session_uid; global, since all viewports of a scene ask
+_states = {}  # last result of _state(), by the same; global like the counts
 
 
 def change_counts(scene):

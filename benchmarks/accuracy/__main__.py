@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""python -m benchmarks.accuracy: accuracy.py."""
+"""`python -m benchmarks.accuracy` is accuracy.py."""
 
-from .accuracy import main
+import sys
+
+from . import accuracy
 
 if __name__ == "__main__":
-    main()
+    sys.exit(accuracy.main(sys.argv[1:]))

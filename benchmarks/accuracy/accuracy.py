@@ -296,7 +296,3 @@ def main(arguments):
     accuracy_report.write(path, options.page)
     print(f"Written: {options.page} and {options.out}")
     return exit_code(found["scenes"])
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""python -m benchmarks.cost: bench.py."""
+"""`python -m benchmarks.cost` is bench.py."""
 
-from .bench import main
+import sys
+
+from . import bench
 
 if __name__ == "__main__":
-    main()
+    sys.exit(bench.main())

@@ -224,7 +224,3 @@ def main():
     cost_report.write(options.output, page)
     print(page)
     return int(not all(kept for _, kept in cost_report.verdicts(measured)))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

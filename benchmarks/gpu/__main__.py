@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""python -m benchmarks.gpu: speed.py."""
+"""`python -m benchmarks.gpu` is speed.py."""
 
-from .speed import main
+import sys
+
+from . import speed
 
 if __name__ == "__main__":
-    main()
+    sys.exit(speed.main())

@@ -161,7 +161,3 @@ def main():
     text, kept = gpu_report.verdict(found)
     print(text)
     return int(not kept)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""python -m benchmarks.motion: motion.py."""
+"""`python -m benchmarks.motion` is motion.py."""
 
-from .motion import main
+import sys
+
+from . import motion, motion_farm
 
 if __name__ == "__main__":
-    main()
+    sys.exit(motion.main(sys.argv[1:], motion_farm))

@@ -223,14 +223,11 @@ def parse(arguments):
     return options
 
 
-def main(arguments):
+def main(arguments, farm):
+    """farm: the module motion_farm, which takes the ways from this one."""
     options = parse(arguments)
     afterlight = session.enable_afterlight()
-    report, of = motion_report, measure
-    if options.farm:
-        from . import motion_farm as report  # here: it takes the ways from this module
-
-        of = report.measure
+    report, of = (farm, farm.measure) if options.farm else (motion_report, measure)
     rows, failed = [], False
     for path in options.paths:
         print(f"{path.name}:", file=sys.stderr, flush=True)
@@ -253,7 +250,3 @@ def main(arguments):
                 options.sheet_frame,
             )
     return int(failed)
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -83,7 +83,7 @@ def test_panoramic_camera(scene, refuse):
 
 def test_camera_that_is_none(scene, refuse):
     scene.camera = bpy.data.objects["Lamp"]
-    assert refuse("Lamp", "no camera") is not None
+    assert refuse("Lamp", "not a camera object") is not None
 
 
 def test_no_view_layer(scene, refuse):
@@ -95,7 +95,7 @@ def test_stereo(scene, refuse):
     scene.render.use_multiview = True
     scene.render.image_settings.views_format = "STEREO_3D"
     try:
-        refuse("Stereo", "Untick")
+        refuse("Stereo", "Disable Stereoscopy")
     except (FileNotFoundError, OSError):
         pass  # Blender names stereo files otherwise
 
@@ -105,7 +105,7 @@ def test_ray_tracing_never_doubles_the_light(scene, refuse, tmp_path):
     scene.afterlight.enabled = False
     alone = read_rgb(render(scene, tmp_path / "alone.exr"))
     scene.afterlight.enabled = True
-    refuse("ray tracing", "twice", picture=alone)
+    refuse("ray tracing", "already adds", picture=alone)
 
 
 def test_single_layer(scene, refuse, tmp_path):
@@ -125,7 +125,7 @@ def test_compositing_switched_off(scene, plain, tmp_path, afterlight):
     """Without a window nobody can press Repair, so it is put right; with one the panel says so."""
     scene.render.use_compositing = False
     (fault,) = afterlight.addon.compositor.faults.find(scene)
-    assert "Compositing is switched off" in fault
+    assert "Compositing is disabled" in fault
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     assert (lit - plain).mean() > 0 and scene.afterlight.report == ""
 
@@ -218,7 +218,7 @@ def test_the_helper_scene_says_what_it_is(scene, tmp_path, capfd):
     try:
         bpy.ops.render.render(scene=helper.name)
     except RuntimeError as error:
-        assert 'no render of "Scene"' in str(error) and "Render that one" in str(error)
+        assert 'no render of "Scene"' in str(error) and "Render that scene" in str(error)
     else:
         pytest.fail("rendered a scene that serves to light another")
     assert "Traceback" not in "".join(capfd.readouterr())
@@ -266,7 +266,7 @@ def test_any_terminal_for_an_error_of_our_own(scene, afterlight, monkeypatch, tm
     monkeypatch.setattr(sys, "stdout", terminal())
     monkeypatch.setattr(sys, "stderr", sys.stdout)
     render(scene, tmp_path / "picture.exr")
-    assert "an error of its own (Käse)" in scene.afterlight.report
+    assert "Internal error in Afterlight (Käse)" in scene.afterlight.report
 
 
 def test_background_render_makes_what_python_saves_passes_through(scene, afterlight):

@@ -264,7 +264,7 @@ picture.image = bpy.data.images.new("Sky", 8192, 4096)
 tree.links.new(picture.outputs[0], background.inputs[0])
 gpu.texture.from_image(picture.image)  # as EEVEE does
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-assert world.read(bpy.context.evaluated_depsgraph_get(), {{}}) is None  # black
+assert world.read(bpy.context.evaluated_depsgraph_get(), dict()) is None  # black
 print("MB:", (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
 """
 

@@ -28,14 +28,14 @@ def scene(fresh):
 @pytest.fixture
 def gathered(afterlight, monkeypatch):
     """(frame, view layer, mean of the gathers that its light is of) of all frames that take part in an average."""
-    found, module = [], afterlight.addon.render.histories
-    keep = module.keep
+    found, histories = [], afterlight.addon.render.histories.Histories
+    keep = histories.keep
 
-    def spy(scene, layer, settings, light):
+    def spy(self, scene, layer, settings, light):
         found.append((scene.frame_current, layer, float(np.array(light.light.read())[..., 3].mean())))
-        keep(scene, layer, settings, light)
+        keep(self, scene, layer, settings, light)
 
-    monkeypatch.setattr(module, "keep", spy)
+    monkeypatch.setattr(histories, "keep", spy)
     return found
 
 

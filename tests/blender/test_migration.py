@@ -32,14 +32,14 @@ def values(scene, names):
 
 
 def stored(scene, addon):
-    names = {parameter.name for parameter in addon.properties.PARAMETERS}
+    names = {parameter.name for parameter in addon.parameters.PARAMETERS}
     return {name for name in names if scene.afterlight.is_property_set(name)}
 
 
 def test_versions_agree(addon):
     version = extension.manifest()["version"]
-    assert ".".join(map(str, addon.properties.VERSION)) == version
-    assert all(step <= addon.properties.VERSION for step, _ in addon.migration.STEPS)
+    assert ".".join(map(str, addon.host.version.VERSION)) == version
+    assert all(step <= addon.host.version.VERSION for step, _ in addon.migration.STEPS)
 
 
 def test_the_old_file_is_what_it_says(addon, monkeypatch):
@@ -53,10 +53,10 @@ def test_the_old_file_is_what_it_says(addon, monkeypatch):
 
 
 def test_settings_of_0_1_0_are_migrated(old, addon):
-    names = {parameter.name for parameter in addon.properties.PARAMETERS}
+    names = {parameter.name for parameter in addon.parameters.PARAMETERS}
     for scene, expected in ((old["Kept"], KEPT), (old["Untouched"], DEFAULTS)):
         assert scene.afterlight.enabled and values(scene, expected) == expected
-        assert tuple(scene.afterlight.version) == addon.properties.VERSION and stored(scene, addon) == names
+        assert tuple(scene.afterlight.version) == addon.host.version.VERSION and stored(scene, addon) == names
         assert not addon.diagnosis.checks.findings(scene)
     for frame, strength in ((1, 2.0), (6, 1.0), (11, 0.0)):
         old["Kept"].frame_set(frame)
@@ -97,8 +97,8 @@ def test_scenes_come_in_from_an_old_file(addon):
     with bpy.data.libraries.load(str(OLD)) as (there, here):
         here.scenes = ["Untouched"]
     (came,) = here.scenes
-    assert tuple(came.afterlight.version) == addon.properties.VERSION and values(came, DEFAULTS) == DEFAULTS
-    assert mine.afterlight.samples == 64 and tuple(mine.afterlight.version) == addon.properties.VERSION
+    assert tuple(came.afterlight.version) == addon.host.version.VERSION and values(came, DEFAULTS) == DEFAULTS
+    assert mine.afterlight.samples == 64 and tuple(mine.afterlight.version) == addon.host.version.VERSION
 
 
 def test_files_get_the_version_when_they_are_saved(addon, tmp_path):
@@ -110,8 +110,8 @@ def test_files_get_the_version_when_they_are_saved(addon, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
     for name in ("Scene", "Touched"):
-        assert tuple(bpy.data.scenes[name].afterlight.version) == addon.properties.VERSION
-        assert len(stored(bpy.data.scenes[name], addon)) == len(addon.properties.PARAMETERS)
+        assert tuple(bpy.data.scenes[name].afterlight.version) == addon.host.version.VERSION
+        assert len(stored(bpy.data.scenes[name], addon)) == len(addon.parameters.PARAMETERS)
     assert not addon.properties.is_stored(bpy.data.scenes["Plain"].afterlight), (
         "nobody touched it: nothing of ours in it"
     )
@@ -129,7 +129,7 @@ def test_a_file_of_a_newer_version_loses_nothing(addon, tmp_path, capfd):
     bpy.ops.wm.open_mainfile(filepath=path)
     scene = bpy.context.scene
     (found,) = addon.diagnosis.checks.findings(scene)
-    assert "9.1.0" in found.text and not found.fatal and not found.cure
+    assert "9.1.0" in found.text and not found.fatal and not found.fix
     capfd.readouterr()
     render(scene, tmp_path / "lit.exr")
     printed = "".join(capfd.readouterr())
@@ -150,7 +150,7 @@ def test_undo_after_loading_keeps_the_migrated_settings(old, addon):
     bpy.ops.ed.undo_push(message="changed")
     bpy.ops.ed.undo()
     scene = bpy.data.scenes["Untouched"]
-    assert scene.afterlight.samples == 256 and tuple(scene.afterlight.version) == addon.properties.VERSION
+    assert scene.afterlight.samples == 256 and tuple(scene.afterlight.version) == addon.host.version.VERSION
 
 
 def test_enabling_the_extension_in_an_old_file(addon, afterlight, old):
@@ -161,5 +161,5 @@ def test_enabling_the_extension_in_an_old_file(addon, afterlight, old):
     migration = __import__("sys").modules[f"{module}.addon.migration"]
     assert bpy.app.timers.is_registered(migration._once), "Blender lets no add-on near the file while it is switched on"
     migration._once()
-    assert tuple(bpy.data.scenes["Kept"].afterlight.version) == migration.settings.VERSION
+    assert tuple(bpy.data.scenes["Kept"].afterlight.version) == migration.properties.VERSION
     np.testing.assert_equal(values(bpy.data.scenes["Kept"], KEPT), KEPT)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings from scene to scene, presets, keyframes and drivers."""
 
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,7 +15,7 @@ from drawing import Layout, drawn
 
 
 def test_settings_go_to_other_scenes(scene, addon):
-    settings, names = scene.afterlight, [parameter.name for parameter in addon.properties.PARAMETERS]
+    settings, names = scene.afterlight, [parameter.name for parameter in addon.parameters.PARAMETERS]
     mine = dict(
         method="RADIOSITY",
         strength=0.5,
@@ -33,6 +34,7 @@ def test_settings_go_to_other_scenes(scene, addon):
         denoise="NONE",
         seed=3,
         use_animated_seed=True,
+        use_viewport=True,
     )
     assert sorted(mine) == sorted(names)
     assert not bpy.ops.afterlight.copy_settings.poll(), "there is no other scene"
@@ -53,20 +55,42 @@ def test_settings_go_to_other_scenes(scene, addon):
         bpy.ops.afterlight.copy_settings(scene="Four")
 
 
+def test_listed_cameras_go_to_scenes_that_contain_them(scene, addon):
+    settings, shared = scene.afterlight, scene.camera
+    own = bpy.data.objects.new("Own", bpy.data.cameras.new("Own"))
+    scene.collection.objects.link(own)
+    with_it, without = bpy.data.scenes.new("With").afterlight, bpy.data.scenes.new("Without").afterlight
+    with_it.id_data.collection.objects.link(shared)
+    other = bpy.data.objects.new("Other", bpy.data.cameras.new("Other"))
+    for each in (with_it, without):
+        each.id_data.collection.objects.link(other)
+        each.view_cameras.add().camera = other
+    settings.views = "MANUAL"
+    for camera in (own, shared, None):
+        settings.view_cameras.add().camera = camera
+    assert bpy.ops.afterlight.copy_settings() == {"FINISHED"}
+    assert with_it.views == without.views == "MANUAL"
+    assert [each.camera for each in with_it.view_cameras] == [shared]
+    assert [each.camera for each in without.view_cameras] == [other], "none of them is there"
+    assert [each.camera for each in settings.view_cameras] == [own, shared, None]
+
+
 def test_reset_gives_the_defaults_and_names_what_is_animated(scene, addon, capfd):
     settings = scene.afterlight
     settings.property_unset("method")
-    defaults = {parameter.name: getattr(settings, parameter.name) for parameter in addon.properties.PARAMETERS}
+    defaults = {parameter.name: getattr(settings, parameter.name) for parameter in addon.parameters.PARAMETERS}
     settings.method, settings.views, settings.draws, settings.bounces = "PAPER", "CAMERA", 3, 8
     settings.strength, settings.start, settings.samples, settings.radius, settings.seed = 0.5, "FULL", 99, 9, 3
-    settings.use_animated_seed = settings.enabled = True
+    settings.use_animated_seed = settings.enabled = settings.use_viewport = True
+    settings.view_cameras.add().camera = scene.camera
     assert bpy.ops.afterlight.reset() == {"FINISHED"}
     assert {name: getattr(settings, name) for name in defaults} == defaults and settings.enabled
+    assert [each.camera for each in settings.view_cameras] == [scene.camera], "the user's work"
     settings.keyframe_insert("radius", frame=1)
     settings.driver_add("seed")
     capfd.readouterr()
     bpy.ops.afterlight.reset()
-    assert 'Radius, Seed of "Scene" has keyframes or a driver' in "".join(capfd.readouterr())
+    assert 'Radius, Seed in scene "Scene" has keyframes or a driver' in "".join(capfd.readouterr())
 
 
 def test_undo_takes_operators_back(scene):
@@ -106,7 +130,7 @@ def test_search_finds_what_the_menus_hold(scene, addon):
 
 def test_operators_say_why_they_are_grey(scene):
     assert not bpy.ops.afterlight.repair.poll()
-    with pytest.raises(RuntimeError, match="Tick Indirect Light first"):
+    with pytest.raises(RuntimeError, match="Enable Indirect Light first"):
         bpy.ops.afterlight.repair()
     with pytest.raises(RuntimeError, match="no other scene"):
         bpy.ops.afterlight.copy_settings()
@@ -166,7 +190,7 @@ def test_no_script_but_a_preset_is_run(scene, presets, tmp_path):
         presets,
         "",
     ):
-        with pytest.raises(RuntimeError, match="does not lie in a folder of Indirect Light presets"):
+        with pytest.raises(RuntimeError, match="is not in a folder of Indirect Light presets"):
             bpy.ops.afterlight.preset(filepath=str(path))
         assert scene.afterlight.samples == 256
     assert bpy.ops.afterlight.preset(filepath=str(inside)) == {"FINISHED"} and scene.afterlight.samples == 77
@@ -210,7 +234,7 @@ def test_presets_on_a_disk_that_is_full(scene, presets, capfd):
             bpy.ops.afterlight.preset_add(name="Full")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    assert "could not be written" in str(raised.value) and "Traceback" not in str(raised.value)
+    assert "could not be saved" in str(raised.value) and "Traceback" not in str(raised.value)
     assert not (presets / "Full.py").exists(), "no preset that is cut short"
 
 
@@ -231,6 +255,17 @@ def test_each_shipped_preset_has_a_tooltip_of_its_own(scene, addon):
     texts.append(operators.AFTERLIGHT_OT_preset.description(bpy.context, Entry))
     assert len(set(texts)) == len(texts) and texts[-1] == operators.AFTERLIGHT_OT_preset.bl_description
     assert addon.ui.panel.AFTERLIGHT_PT_presets.preset_operator == "afterlight.preset"
+
+
+def test_shipped_presets_set_what_their_method_has(addon):
+    stored = {each.name: each for each in addon.parameters.PARAMETERS if each.in_presets}
+    added = addon.ui.operators.AFTERLIGHT_OT_preset_add.preset_values
+    assert added == [f"settings.{name}" for name in stored]
+    for path in addon.ui.operators.PRESETS.glob("*.py"):
+        values = dict(re.findall(r'^settings\.(\w+) = "?(\w+)"?$', path.read_text(), re.M))
+        needed = {name for name, each in stored.items() if values["method"] in each.methods}
+        assert stored.keys() >= values.keys() >= needed - {"use_glossy"}, path
+        assert "use_glossy" not in values, "as the help says"
 
 
 # Keyframes and drivers
@@ -267,8 +302,8 @@ def test_every_setting_takes_keyframes_and_drivers_frame_by_frame(scene, addon, 
         "accumulate": (1, 2, 3),
     }
     # They decide which scenes and passes there are, and stay as they are.
-    wiring = {"method", "views", "view_count", "use_glossy", "use_history", "denoise"}
-    assert keyed.keys() | radiosity.keys() | wiring == {parameter.name for parameter in addon.properties.PARAMETERS}
+    wiring = {"method", "use_viewport", "views", "view_count", "use_glossy", "use_history", "denoise"}
+    assert keyed.keys() | radiosity.keys() | wiring == {parameter.name for parameter in addon.parameters.PARAMETERS}
     for name, values in keyed.items():
         for frame, value in enumerate(values, 1):
             setattr(settings, name, value)

@@ -70,7 +70,7 @@ def test_a_copied_helper_scene_is_the_users(with_views, addon, how, kind):
     for _ in range(2):
         settle()
     assert copy.name in bpy.data.scenes and not addon.compositor.faults.find(with_views)
-    assert not copy.afterlight.role or "can be deleted" in addon.diagnosis.checks.findings(copy)[0].text
+    assert not copy.afterlight.role or "You can delete it" in addon.diagnosis.checks.findings(copy)[0].text
     with_views.afterlight.enabled = False
     settle()
     assert [scene.name for scene in bpy.data.scenes if scene not in (copy, with_views)] == []

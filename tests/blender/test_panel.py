@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel, as far as it shows without a window: what it holds, what is grey, what mends a scene at a click."""
+"""The panel, as far as it shows without a window: its rows, what is greyed out, and the fixes of a scene."""
 
 import bpy
 import numpy as np
@@ -26,7 +26,7 @@ def test_every_setting_is_in_the_panel_and_greyed_where_it_does_not_apply(scene,
             ),
         ]
 
-    names = {"use_viewport", *(parameter.name for parameter in addon.properties.PARAMETERS)}
+    names = {parameter.name for parameter in addon.parameters.PARAMETERS}
     paper, radiosity = (
         {"samples", "radius"},
         {
@@ -127,7 +127,7 @@ def test_memory_is_what_the_textures_take(addon, monkeypatch, start, size, radiu
     assert light.gpu_bytes(width, height, settings) == most and held == 0
 
 
-# What mends
+# Fixes
 
 
 def other_engine(scene):
@@ -184,7 +184,7 @@ def all_in_groups(scene):
         tree.nodes.remove(node)
 
 
-MENDED = [
+SPOILED = [
     other_engine,
     another_camera,
     lamp_for_a_camera,
@@ -201,27 +201,27 @@ MENDED = [
 ]
 
 
-@pytest.mark.parametrize("spoil", MENDED)
-def test_one_click_mends_it_and_undo_takes_it_back(scene, addon, spoil):
+@pytest.mark.parametrize("spoil", SPOILED)
+def test_one_click_fixes_it_and_undo_takes_it_back(scene, addon, spoil):
     findings = addon.diagnosis.checks.findings
     (nested_tree if spoil == all_in_groups else simple_tree)(scene)
     scene.afterlight.enabled = True
     assert not findings(scene)
     spoil(scene)
     (found,) = findings(scene)
-    assert found.cure and found.fatal == (spoil != probes)
+    assert found.fix and found.fatal == (spoil != probes)
     panel = drawn(addon.ui.panel.AFTERLIGHT_PT_indirect_light)
     assert words(panel) == found.text
     assert [
         (arguments[0], options["text"])
         for kind, arguments, options, _ in panel
         if kind == "operator" and arguments[0] == "afterlight.mend"
-    ] == [("afterlight.mend", addon.diagnosis.fixes.CURES[found.cure].button)]
+    ] == [("afterlight.mend", addon.diagnosis.fixes.FIXES[found.fix].button)]
     bpy.ops.ed.undo_push(message="spoiled")
     before = written_down()
-    assert bpy.ops.afterlight.mend(cure=found.cure) == {"FINISHED"}
+    assert bpy.ops.afterlight.mend(cure=found.fix) == {"FINISHED"}
     assert not findings(scene)
-    bpy.ops.ed.undo_push(message="mended")
+    bpy.ops.ed.undo_push(message="fixed")
     bpy.ops.ed.undo()
     assert not differences(before, written_down())
     assert [again.text for again in findings(bpy.context.scene)] == [found.text]
@@ -233,25 +233,25 @@ def test_no_button_where_only_the_user_knows(scene, addon):
     scene.afterlight.enabled = True
     tree.nodes.remove(tree.nodes["Afterlight"])
     (found,) = findings(scene)
-    assert "Link the Image" in found.text and not found.cure
+    assert "Link the Image" in found.text and not found.fix
     for node in [node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers"]:
         tree.nodes.remove(node)
     (found,) = findings(scene)
-    assert "Add one" in found.text and not found.cure
+    assert "Add one" in found.text and not found.fix
     scene.afterlight.enabled = False
     bpy.data.objects.remove(scene.camera)
     (found,) = findings(scene)
-    assert "Add > Camera" in found.text and not found.cure
+    assert "Add > Camera" in found.text and not found.fix
 
 
 def test_a_helper_scene_leads_to_the_scene_it_lights(scene, addon):
     scene.afterlight.enabled = True
     bpy.context.window.scene = scene.afterlight.helper
     (found,) = addon.diagnosis.checks.findings(bpy.context.scene)
-    assert bpy.ops.afterlight.mend(cure=found.cure) == {"FINISHED"} and bpy.context.window.scene == scene
+    assert bpy.ops.afterlight.mend(cure=found.fix) == {"FINISHED"} and bpy.context.window.scene == scene
 
 
 def test_lines_are_broken_where_they_fit(addon):
-    wrapped = addon.ui.panel.wrapped
+    wrapped = addon.ui.drawing.wrapped
     assert wrapped("one two three", lambda line: len(line) <= 7) == ["one two", "three"]
     assert wrapped("extraordinary", lambda line: len(line) <= 7) == ["extraordinary"]

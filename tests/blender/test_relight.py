@@ -94,7 +94,7 @@ def test_a_render_region_and_a_crop(scene, tmp_path):
         (lambda scene: os.remove(files()[0]), "temporary folder"),
         (lambda scene: setattr(scene.render, "engine", "BLENDER_WORKBENCH"), "Set Render Engine to EEVEE"),
         (lambda scene: bpy.ops.afterlight.free_passes(), "Press F12"),
-        (lambda scene: setattr(scene.afterlight, "enabled", False), "Tick"),
+        (lambda scene: setattr(scene.afterlight, "enabled", False), "Enable Indirect Light"),
     ],
 )
 def test_what_stands_in_the_way_is_said(scene, tmp_path, change, words):

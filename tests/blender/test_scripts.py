@@ -119,7 +119,7 @@ def test_frames_are_lit_or_plain(outcome, case):
         assert mean == pytest.approx(plain, rel=1e-3) or mean > 1.1 * plain, means
     assert not faults and bool(helpers) == enabled, "set up, or cleared, when the render was over"
     if any(mean == pytest.approx(plain, rel=1e-3) for mean in means):
-        assert "middle of a render" in report + "".join(warnings) or case[0] == "render_init"
+        assert "during a render" in report + "".join(warnings) or case[0] == "render_init"
 
 
 def test_what_waits_is_said_and_done(fresh, afterlight):
@@ -130,7 +130,7 @@ def test_what_waits_is_said_and_done(fresh, afterlight):
     scene.afterlight.enabled = True
     assert not [each for each in bpy.data.scenes if each.afterlight.role]
     (finding,) = addon.diagnosis.checks.findings(scene)
-    assert finding.fatal and "middle of a render" in finding.text
+    assert finding.fatal and "during a render" in finding.text
     addon.render.handlers.after_render()
     assert not addon.diagnosis.checks.findings(scene)
     scene.afterlight.enabled = False

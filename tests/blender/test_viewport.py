@@ -126,7 +126,7 @@ def test_a_viewport_is_lit_where_all_is_asked_for(scene, addon):
             scene, SimpleNamespace(shading=SimpleNamespace(type=shading[0], render_pass=shading[1]))
         )
     scene.eevee.use_raytracing = True
-    assert not handlers.is_lit(scene, space) and "twice" in handlers.problem(scene)
+    assert not handlers.is_lit(scene, space) and "already adds" in handlers.problem(scene)
     scene.eevee.use_raytracing = False
     scene.render.engine = "BLENDER_WORKBENCH"
     assert not handlers.is_lit(scene, space)

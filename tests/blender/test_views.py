@@ -522,7 +522,12 @@ def test_views_that_can_not_be_used_are_named_and_left_out(scene, views, afterli
     render(scene, tmp_path / "lit.exr")
     assert scene.afterlight.report == "" and len(seen) == 1
     text = " ".join(status.warnings(scene))
-    for part in ("no camera. Choose one", '"Lamp" is no camera', '"Dome" is panoramic', '"Away" sees no surface'):
+    for part in (
+        "no camera. Choose one",
+        '"Lamp" is not a camera object',
+        '"Dome" is panoramic',
+        '"Away" sees no surface',
+    ):
         assert part in text, part
     assert len(status.warnings(scene)) == 4
 

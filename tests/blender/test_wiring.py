@@ -116,8 +116,8 @@ def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, addon, afte
     scene.eevee.taa_render_samples = 1
     scene.afterlight.enabled = True
     (finding,) = afterlight.addon.diagnosis.checks.findings(scene)
-    assert finding.cure == "RENDER_LAYERS" and "inside node groups" in finding.text
-    bpy.ops.afterlight.mend(cure=finding.cure)
+    assert finding.fix == "RENDER_LAYERS" and "inside node groups" in finding.text
+    bpy.ops.afterlight.mend(cure=finding.fix)
     assert not addon.compositor.faults.find(scene)
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     assert scene.afterlight.report == ""
@@ -135,7 +135,7 @@ def test_a_compositor_that_uses_passes_only(scene, addon):
     tree.links.new(picture.outputs["Depth"], tree.nodes.new("NodeGroupOutput").inputs[0])
     scene.afterlight.enabled = True
     (fault,) = addon.compositor.faults.find(scene)
-    assert "uses the Image of no Render Layers node" in fault
+    assert "does not use the Image of any Render Layers node" in fault
     light = next(node for node in ours(tree))
     tree.links.new(light.outputs["Indirect"], tree.nodes["Group Output"].inputs[0])
     assert not addon.compositor.faults.find(scene), "the light alone is a use of it"
@@ -154,7 +154,7 @@ def test_the_link_of_the_image_is_missed_and_put_back(scene, addon, afterlight, 
     ]:
         tree.links.remove(link)
     (finding,) = afterlight.addon.diagnosis.checks.findings(scene)
-    assert "no longer linked" in finding.text and finding.cure == "REPAIR"
+    assert "no longer linked" in finding.text and finding.fix == "REPAIR"
     bpy.ops.afterlight.repair()
     assert not addon.compositor.faults.find(scene)
 
@@ -172,7 +172,7 @@ def test_deleting_our_nodes_is_noticed_and_repaired(scene, addon, afterlight, ki
             tree.nodes.remove(node)
     found = afterlight.addon.diagnosis.checks.findings(scene)
     only_the_user_knows = (kind, doomed) == ("simple", "add")  # Blender forgets the links of a deleted node
-    assert found and {finding.cure for finding in found} == {"" if only_the_user_knows else "REPAIR"}
+    assert found and {finding.fix for finding in found} == {"" if only_the_user_knows else "REPAIR"}
     addon.compositor.setup.follow(scene)
     assert addon.compositor.faults.find(scene), "nodes that a user deletes must not come back by themselves"
     if kind == "simple" and doomed != "light":  # as the message asks
@@ -322,8 +322,8 @@ def test_the_button_turns_off_ray_tracing(scene, afterlight):
     scene.eevee.use_raytracing = True
     scene.afterlight.enabled = True
     (found,) = findings(scene)
-    assert found.fatal and found.cure == "RAY_TRACING"
-    assert bpy.ops.afterlight.mend(cure=found.cure) == {"FINISHED"}
+    assert found.fatal and found.fix == "RAY_TRACING"
+    assert bpy.ops.afterlight.mend(cure=found.fix) == {"FINISHED"}
     assert not findings(scene) and not scene.eevee.use_raytracing
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What people read: the page of help, tooltips, and all of it in another language."""
+"""What users read: the help page, tooltips and messages, and their translations."""
 
 import ast
 import inspect
@@ -52,9 +52,11 @@ def opened(monkeypatch):
 def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     bpy.ops.afterlight.help()
     bpy.ops.afterlight.help(section="samples")
-    for parameter in addon.properties.PARAMETERS:
+    for parameter in addon.parameters.PARAMETERS:
         bpy.ops.wm.doc_view_manual(doc_id=f"AfterlightSettings.{parameter.name}")
     bpy.ops.wm.doc_view_manual(doc_id="AfterlightSettings.enabled")
+    for doc_id in ("AfterlightSettings.view_cameras", "AfterlightView.camera"):
+        bpy.ops.wm.doc_view_manual(doc_id=doc_id)
     operators = [f"afterlight.{name}" for name in dir(bpy.ops.afterlight)]
     for operator in operators:
         bpy.ops.wm.doc_view_manual(doc_id=operator)
@@ -63,8 +65,9 @@ def test_help_and_online_manual_open_an_existing_section(scene, addon, opened):
     anchors = Anchors(path.read_text()).ids
     sections = [section for _, section in opened]
     assert sections[:2] == ["", "samples"]
-    first = 3 + len(addon.properties.PARAMETERS)
-    assert sections[2:first] == [*(parameter.name for parameter in addon.properties.PARAMETERS), "enabled"]
+    settings = [*(parameter.name for parameter in addon.parameters.PARAMETERS), "enabled", "views", "views"]
+    first = 2 + len(settings)
+    assert sections[2:first] == settings
     assert len(sections) == first + len(operators) and set(sections[1:]) <= set(anchors)
 
 
@@ -73,15 +76,52 @@ def test_the_page_of_help_is_whole(addon):
     page = Anchors(text)
     assert len(page.ids) == len(set(page.ids))
     assert all(link.startswith("#") and link[1:] in page.ids for link in page.links), "nothing needs a network"
-    for parameter in addon.properties.PARAMETERS:
+    for parameter in addon.parameters.PARAMETERS:
         assert f">{parameter.label} <" in text, parameter.label
-    start = next(parameter for parameter in addon.properties.PARAMETERS if parameter.name == "start")
+    for parameter in addon.parameters.PARAMETERS:
+        section = re.search(rf'<h3 id="{parameter.name}">.*?(?=<h[23])', text, re.S)[0]
+        for method in addon.parameters.GATHER_SETTINGS:
+            said = f"<p>{method.title()} only" in section
+            assert said == (parameter.methods == {method}), (parameter.name, method)
+    start = next(parameter for parameter in addon.parameters.PARAMETERS if parameter.name == "start")
     for _, label, *_ in start.options["items"]:
         assert f"<th>{label}</th>" in text
     for preset in (ADDON / "presets" / "afterlight").glob("*.py"):
         values = re.findall(r"= (\d+)", preset.read_text())
-        row = re.search(rf"<th>{preset.stem.title()}</th><td>(.*?)</td>", text, re.S)[1]
+        presets = text[text.index('<h2 id="presets">') :]
+        row = re.search(rf"<th>{preset.stem.title()}</th><td>(.*?)</td>", presets, re.S)[1]
         assert all(value in row for value in values), preset
+
+
+def test_the_sections_of_settings_are_in_the_order_of_the_panel(addon):
+    names = [parameter.name for parameter in addon.parameters.PARAMETERS]
+    page = Anchors((extension.ROOT / "docs" / "help.html").read_text())
+    assert [each for each in page.ids if each in names] == names
+
+
+def test_help_names_the_settings_that_take_no_keyframes(addon):
+    text = (extension.ROOT / "docs" / "help.html").read_text()
+    named = re.search(r'<p id="not-animatable">.*?</p>', text, re.S)[0]
+    fixed = {parameter.name for parameter in addon.parameters.PARAMETERS if not parameter.is_animatable}
+    assert sorted(Anchors(named).links) == sorted(f"#{name}" for name in {"enabled", *fixed})
+
+
+def test_help_lists_the_stages_that_renders_report():
+    text = (extension.ROOT / "docs" / "help.html").read_text()
+    listed = re.findall(r"<tr><th>(.*?)</th>", text[text.index('id="last-render"') : text.index('id="messages"')])
+    assert listed == [f"{stage[:1].upper()}{stage[1:]}" for stage in STAGES]
+    code = "".join(path.read_text() for path in (ADDON / "render").glob("*.py"))
+    assert all(f'"{stage}"' in code for stage in STAGES), "no code reports it"
+
+
+def test_limits_of_bounces_are_told(addon):
+    """Placement and drafts count fewer of them than the setting says."""
+    depth, draft = addon.views.placement.MAX_BOUNCES, addon.viewport.region_light.DRAFT_BOUNCES
+    bounces = next(parameter for parameter in addon.parameters.PARAMETERS if parameter.name == "bounces")
+    assert depth < bounces.options["max"] and f"the first {depth} bounces" in bounces.tooltip
+    text = (extension.ROOT / "docs" / "help.html").read_text()
+    section = text[text.index('<h3 id="bounces">') : text.index('<h3 id="use_visibility">')]
+    assert f"the first {depth} bounces" in section and f"compute {draft}." in section
 
 
 # Words
@@ -186,7 +226,8 @@ def test_words_are_said_in_the_language_of_the_interface(scene, addon, monkeypat
 
 
 def test_tooltips_say_what_it_does_and_what_it_costs(addon):
-    for parameter in addon.properties.PARAMETERS:
+    for parameter in addon.parameters.PARAMETERS:
         assert re.search(r"cost|time|fast", parameter.tooltip, re.I), parameter.name
-    for kind in addon.ui.operators.CLASSES:
-        assert getattr(kind, "bl_description", "") or inspect.getattr_static(kind, "description", None), kind
+    for kind in bpy.types.Operator.__subclasses__():
+        if kind.__module__.startswith(extension.MODULE):
+            assert getattr(kind, "bl_description", "") or inspect.getattr_static(kind, "description", None), kind

@@ -91,9 +91,9 @@ def read(scene, addon):
     return np.stack(found.normal, -1), np.stack(found.diffuse_direct, -1)
 
 
-def said(world, cache=None):
+def said(world):
     """(6, 3): the same by our own idea of the world."""
-    found = world.read(bpy.context.evaluated_depsgraph_get(), {} if cache is None else cache)
+    found = world.read(bpy.context.evaluated_depsgraph_get(), {})
     return found[0] + np.array(NORMALS) @ found[1:]
 
 
@@ -127,10 +127,10 @@ def lit_by_eevee_without_sun(scene, addon):
 
 def test_a_picture_is_looked_at_once_a_render(scene, world, monkeypatch):
     texture = surround(scene, picture())
-    cache, calls = {}, []
-    first = said(world, cache)
+    known, calls = {}, []
+    first = world.read(bpy.context.evaluated_depsgraph_get(), known)
     monkeypatch.setattr(world, "harmonics", lambda *arguments: calls.append(1))
-    assert np.array_equal(said(world, cache), first) and not calls
+    assert np.array_equal(world.read(bpy.context.evaluated_depsgraph_get(), known), first) and not calls
     said_anew = world.read(bpy.context.evaluated_depsgraph_get(), {})
     assert calls and said_anew is None
     assert texture.image.size[0] == 128

@@ -36,12 +36,12 @@ def test_the_interface_speaks_german(window, afterlight):
     steps.tick(window)
     try:
         count, other, said = window.run(say_in, "de_DE")
-        assert count > 100 and other == [] and said.startswith("Die Szene hat keine Kamera")
+        assert count > 100 and other == [] and said.startswith("Die Szene hat keine aktive Kamera")
         time.sleep(0.5)  # the panel is drawn
         window.picture("german")
     finally:
         _, other, said = window.run(say_in, "en_US")
-    assert len(other) > count and said.startswith("The scene has no camera")
+    assert len(other) > count and said.startswith("The scene has no active camera")
 
 
 def set_samples(samples):

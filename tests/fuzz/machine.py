@@ -144,8 +144,8 @@ class FileMachine(RuleBasedStateMachine):
         self.note(f"cures {index}")
         for _ in range(4):
             for finding in self.module.addon.diagnosis.checks.findings(scene) if scene.afterlight.enabled else ():
-                if finding.cure:
-                    bpy.ops.afterlight.mend(cure=finding.cure)
+                if finding.fix:
+                    bpy.ops.afterlight.mend(cure=finding.fix)
         self.settle()
 
     @rule(how=COPIES, index=INDEX)

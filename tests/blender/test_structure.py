@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which module of the add-on may import which: no circles, and the gather knows no scene. Read from the sources, with
-the imports inside functions, which hide a circle and do not undo it."""
+"""The structure of the sources: which module may import which, names, sizes, and state that modules hold.
+
+Read from the text, with the imports inside functions, which hide a circle and do not undo it."""
 
 import ast
 from collections import Counter
@@ -117,3 +118,46 @@ def test_files_can_be_held_in_the_head():
     for path in sorted(Path(ADDON).rglob("*.py")):
         lines = len(path.read_text().splitlines())
         assert lines <= 340 or path.relative_to(extension.ROOT).as_posix() in tables, f"{path}: {lines} lines"
+
+
+def state_of(source):
+    """{name: text of its line and of the comment above} of the variables of a module that change while it is used."""
+    tree, lines, found = ast.parse(source), source.splitlines(), {}
+    rebound = {name for node in ast.walk(tree) if isinstance(node, ast.Global) for name in node.names}
+    for node in tree.body:
+        targets = (
+            node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+        )
+        names = {each.id for target in targets for each in ast.walk(target) if isinstance(each, ast.Name)}
+        is_container = isinstance(node, ast.Assign | ast.AnnAssign) and any(
+            isinstance(each, ast.Dict | ast.List | ast.Set | ast.Call) for each in _values(node.value)
+        )
+        for name in names:
+            if name in rebound or (
+                is_container and name.startswith("_") and not name.startswith("__") and not name.isupper()
+            ):
+                first = node.lineno - 1
+                while first and lines[first - 1].startswith("#"):
+                    first -= 1
+                found[name] = "\n".join(lines[first : node.end_lineno])
+    return found
+
+
+def _values(node):
+    return node.elts if isinstance(node, ast.Tuple) else [node]
+
+
+def test_state_of_a_module_says_why_it_is_global():
+    """What lives as long as one render is in render/job.py."""
+    for path in sorted(ADDON.rglob("*.py")):
+        for name, text in state_of(path.read_text()).items():
+            if "bpy.utils.register" not in text:
+                assert "global" in text, f"{path.relative_to(ADDON)}: {name}"
+
+
+def test_state_of_a_module_is_found():
+    source = (
+        "_a = {}\nB = {}\n# global, for a reason\n_c, _d = [], set()\ne = None\ndef f():\n    global e\n    e = 1\n"
+    )
+    found = state_of(source)
+    assert found.keys() == {"_a", "_c", "_d", "e"} and "reason" in found["_c"] and "global" not in found["_a"]
