@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Freestyle's lines lie over the light, as over the plain picture, and leave no trace in the file."""
+"""Freestyle lines cover the light as they cover the plain image, and leave no trace in the file."""
 
 import bpy
 import numpy as np
@@ -24,7 +24,7 @@ def scene(fresh):
     if settings.linesets[0].linestyle is None:
         settings.linesets[0].linestyle = bpy.data.linestyles.new("Lines")
     style(scene, 3.0)
-    bpy.data.objects["Lamp"].data.use_shadow = False  # so that all that is black is a line
+    bpy.data.objects["Lamp"].data.use_shadow = False  # so that only lines are black
     panel = wall(matt("Panel", (0.8, 0.8, 0.8)), (0, 0.8, 0), (90, 0, 0))
     panel.scale = 0.4, 0.4, 0.4
     return scene
@@ -111,7 +111,7 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
 
 
 def test_lines_over_the_light(scene, addon, tmp_path, monkeypatch):
-    """Black lines stay black, and what half-transparent ones let through is lit as the plain picture is drawn over."""
+    """Black lines stay black. What half-transparent lines let through is lit, as they let the plain image through."""
     handed, engine = [], addon.render.engine.AfterlightEngine
     hand_back = engine._hand_back
 
@@ -136,7 +136,9 @@ def test_lines_over_the_light(scene, addon, tmp_path, monkeypatch):
     plain, lit, light = shown(False), shown(True), handed[-1]
     cut = addon.scene.exr.read(addon.render.frames.kept(scene).path, addon.scene.cameras.window(scene)[0])
     clear = np.stack([cut(f"{scene.view_layers[0].name}.Combined.{axis}") for axis in "RGB"], -1)
-    seen = (color[1] - plain[..., 1]) / (color[1] - clear[..., 1])  # what the lines let through of the plain picture
+    seen = (color[1] - plain[..., 1]) / (
+        color[1] - clear[..., 1]
+    )  # share of the plain image that the lines let through
     assert ((seen > 0.2) & (seen < 0.8)).sum() > 50 and (seen > 0.999).sum() > 50
     off = np.abs(lit - plain - seen[..., None] * light)
     assert np.quantile(off, 0.99) < 2e-3 and off.max() < 0.03, "but for a few pixels where lines are drawn anew"

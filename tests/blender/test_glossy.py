@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Glossy Light, end to end: roughness of materials, its pass and nodes, what comes out, and that unticking takes it
-out."""
+"""Glossy Light, end to end: roughness of materials, its pass and nodes, the image, and removal."""
 
 import bpy
 import numpy as np
@@ -11,7 +10,7 @@ from scenes import TREES, box, differences, put, read_rgb, render, simple_tree, 
 
 @pytest.fixture
 def scene(fresh):
-    """The room of tests, with a shiny back wall."""
+    """The test room, with a shiny back wall."""
     scene = box(fresh, samples=2)
     scene.afterlight.method, scene.afterlight.views, scene.afterlight.bounces = "RADIOSITY", "CAMERA", 2
     shiny = metal("Shiny", 0.3)
@@ -50,7 +49,7 @@ NAMES = {
 def test_numbers_of_materials(addon):
     for name, number in NAMES.items():
         assert addon.scene.roughness.cryptomatte_id(name) == number
-    for number in range(3000):  # about six of which would be no numbers, or denormal
+    for number in range(3000):  # about six of them would be infinite, NaN or denormal
         bits = addon.scene.roughness.cryptomatte_id(f"Material.{number}")
         assert np.isfinite(np.uint32(bits).view(np.float32)) and bits >> 23 & 0xFF
 
@@ -147,7 +146,7 @@ def test_an_aov_of_that_name_is_taken_instead(scene, addon, tmp_path):
     assert not scene.view_layers[0].use_pass_cryptomatte_material
 
 
-# Wiring
+# Nodes
 
 
 @pytest.mark.parametrize("kind", TREES)
@@ -233,7 +232,7 @@ def test_a_pass_in_use_stays_on(scene):
 
 @pytest.fixture
 def handed(addon, monkeypatch):
-    """{pass: (H, W, 3), bottom row first} that the engine has handed back last."""
+    """{pass: (H, W, 3), bottom row first}, what the engine last returned to Blender."""
     found, engine = {}, addon.render.engine.AfterlightEngine
     hand_back = engine._hand_back
 
@@ -263,8 +262,7 @@ def test_probes_leave_it_out(scene, addon, tmp_path, handed):
 
 
 def test_gloss_reflects_the_room_once(scene, addon, tmp_path, handed):
-    """What the picture gains over the diffuse light is the pass Indirect Glossy: on the shiny wall alone, times
-    Strength."""
+    """The image gains the pass Indirect Glossy over the diffuse light: on the shiny wall alone, times Strength."""
     scene.afterlight.enabled = True
     diffuse = read_rgb(render(scene, tmp_path / "diffuse.exr"))
     assert set(handed) == {"Indirect"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ticking the box, unticking it, and all that people do to a file in between. Nothing is rendered here."""
+"""Ticking the box, unticking it, and everything that people do to a file in between. Nothing is rendered."""
 
 import bpy
 import pytest
@@ -109,7 +109,7 @@ def test_a_pass_the_user_has_come_to_use_stays_on(scene):
 
 
 def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, addon, afterlight, tmp_path):
-    """Faults 8: after that a node "was deleted", and the picture stayed plain."""
+    """The fix used to report that a node "was deleted", and the image stayed plain."""
     tree = nested_tree(scene)
     for node in [node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers"]:
         tree.nodes.remove(node)
@@ -128,7 +128,7 @@ def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, addon, afte
 
 
 def test_a_compositor_that_uses_passes_only(scene, addon):
-    """Faults 8: it was said that a node had been deleted."""
+    """It used to be reported that a node was deleted."""
     tree = compositor(scene)
     picture = layers_node(tree, scene)
     scene.view_layers[0].use_pass_z = True
@@ -143,7 +143,7 @@ def test_a_compositor_that_uses_passes_only(scene, addon):
 
 @pytest.mark.parametrize("kind", ["none", "simple", "layered"])
 def test_the_link_of_the_image_is_missed_and_put_back(scene, addon, afterlight, kind):
-    """It gave a black picture, and nobody said so."""
+    """A missing link used to give a black image without any message."""
     TREES[kind](scene)
     scene.afterlight.enabled = True
     tree = scene.compositing_node_group
@@ -194,7 +194,7 @@ def test_deleting_the_helper_scene_is_noticed_and_repaired(scene, addon):
     assert not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     after = written_down()
-    # The deleted scene's camera is the user's doing; nothing else may be left.
+    # The user deleted the scene without its camera, which stays; nothing else may be left.
     for kind in ("objects", "cameras"):
         after[kind] = {name: value for name, value in after[kind].items() if not name.startswith(".Afterlight")}
     assert not differences(before, after)
@@ -231,7 +231,7 @@ def test_a_tree_that_the_user_has_taken_out_of_use_is_cleared_too(scene, kind, h
 
 @pytest.mark.parametrize("other_ticked", [False, True])
 def test_deleting_the_scene_takes_its_helper_along(scene, tmp_path, other_ticked):
-    """At the latest when the file is saved: while Blender evaluates another scene it can't go without a crash."""
+    """At the latest when the file is saved: deleting it while Blender evaluates another scene would crash."""
     other = bpy.data.scenes.new("Other")
     scene.afterlight.enabled = True
     other.afterlight.enabled = other_ticked
