@@ -47,19 +47,19 @@ class Reporter:
     """Base of our render engines: remembers messages for the panel, and reports each to Blender when it is new."""
 
     @contextmanager
-    def failures_of(self, scene, print_line=None):
+    def failures_of(self, scene, report_failure=None):
         """Context that turns any error into a message about `scene`, through _fail() or another report_failure(scene,
         text)."""
-        print_line = print_line or self._fail
+        report_failure = report_failure or self._fail
         try:
             yield
         except gather.Cancelled:
             pass
         except (Problem, gather.GpuUnavailable) as problem:
-            print_line(scene, say(*problem.args))
+            report_failure(scene, say(*problem.args))
         except Exception as error:  # a bug of ours must not cost the picture, nor look like success on a farm
             print_traceback()
-            print_line(
+            report_failure(
                 scene,
                 say("Internal error in Afterlight ({}). Please report it with the details in the terminal", error),
             )

@@ -98,8 +98,8 @@ class _Folder:
             self._handle = os.open(path, flags, dir_fd=within._handle if within else None)
         else:
             self._handle = os.path.join(within._handle, path) if within else path
-        found = self.status()
-        if within and not (_is_plain(found, stat.S_ISDIR) and _is_own(found)):
+        status = self.status()
+        if within and not (_is_plain(status, stat.S_ISDIR) and _is_own(status)):
             self.close()
             raise PermissionError(f"{path} is another's, or a link")
 
