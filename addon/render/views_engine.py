@@ -82,8 +82,8 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
                 )
 
     def _score(self, scene, depsgraph, paths, seen, cast):
-        """What the user's own views see: the shares of light as report.covered() wants them. Useless views are left
-        out."""
+        """What the user's own views see: the shares of light as report.keep_coverage() wants them. Useless views are
+        left out."""
         shares = [paths.arriving_share(seen)]
         for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
             if not view.view_layers[0].use:
