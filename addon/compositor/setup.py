@@ -78,7 +78,7 @@ def follow(scene):
     if {layer.name for layer in scene.view_layers if freestyle.is_wanted(scene, layer.name)} - drawn_before:
         for group in nodes.trees(scene.compositing_node_group):
             freestyle.splice(group, scene)
-    if not helper.name.startswith(_helper_name(scene)):  # Blender may have put a number behind it
+    if not helper.name.startswith(_helper_name(scene)):  # Blender may have appended a number
         helper.name = _helper_name(scene)
 
 

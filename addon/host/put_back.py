@@ -7,7 +7,7 @@ fixed order of names is right for all of them, so whatever differs is set again 
 
 import bpy
 
-MAX_ROUNDS = 5  # of setting what still differs, at most
+MAX_ROUNDS = 5  # rounds of setting what still differs
 
 
 def record(*structs, leave=()):

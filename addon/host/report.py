@@ -57,7 +57,7 @@ class Reporter:
             pass
         except (Problem, gather.GpuUnavailable) as problem:
             report_failure(scene, say(*problem.args))
-        except Exception as error:  # a bug of ours must not cost the picture, nor look like success on a farm
+        except Exception as error:  # a bug of ours must not cost the image, nor look like success on a farm
             print_traceback()
             report_failure(
                 scene,

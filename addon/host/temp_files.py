@@ -24,11 +24,11 @@ try:
 except ImportError:
     import msvcrt  # Windows
 
-FOLDER_PREFIX = "afterlight_"  # of the names of our folders
-SESSION_PREFIX = "blender_"  # of the names of Blender's session folders
+FOLDER_PREFIX = "afterlight_"  # names of our folders begin with it
+SESSION_PREFIX = "blender_"  # names of Blender's session folders begin with it
 FILE_NAME = re.compile(r"passes_\d+\.exr")  # names of our files
 LOCK_NAME = ".lock"  # name of the lock file in each of our folders
-MAX_SEARCH_SECONDS = 0.005  # limit for removing abandoned folders; the rest is left for another start
+MAX_SEARCH_SECONDS = 0.005  # seconds for removing abandoned folders; the rest is left for another start
 
 # Whether files are addressed by a folder's descriptor, so that nobody can swap the folder in the meantime.
 BY_DESCRIPTOR = {os.open, os.stat, os.unlink, os.rmdir} <= os.supports_dir_fd and os.listdir in os.supports_fd

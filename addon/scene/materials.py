@@ -8,7 +8,7 @@ import numpy as np
 
 from ..gather import images
 
-UNKNOWN_ALBEDO = 0.5  # where a texture or a node group decides
+UNKNOWN_ALBEDO = 0.5  # if a texture or a node group decides it
 # Nodes whose socket "Roughness" is that of a reflection.
 GLOSSY_NODES = {
     "ShaderNodeBsdfPrincipled",
@@ -20,7 +20,7 @@ GLOSSY_NODES = {
 }
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709, as Blender converts a colour to a number
 MAX_TEXTURE_SIDE = 512  # pixels along a side that a texture is reduced to
-MAX_SHADER_DEPTH = 8  # of nested mix and add shaders
+MAX_SHADER_DEPTH = 8  # levels of nested mix and add shaders
 
 
 @dataclass(frozen=True)

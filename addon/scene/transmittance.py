@@ -24,11 +24,11 @@ STROKES = "use_pass_grease_pencil", "Grease Pencil"
 # (switch, pass) besides passes.PASSES. switch: path of a property from the view layer.
 PASSES = (roughness.COLOR, roughness.DIRECT, ENVIRONMENT, TRANSPARENT, VOLUME, STROKES)
 
-ROUNDING_ERROR = 4e-3  # of a pixel's radiance: passes are half floats, and Combined weights samples by brightness
+ROUNDING_ERROR = 4e-3  # share of a pixel's radiance: passes are half floats, and Combined weights samples by brightness
 MIN_RADIANCE = 1e-6  # W sr^-1 m^-2; below it division tells nothing
 MAX_RADIANCE = 1e15  # its square is still a float32
-LAYERS_PER_DOUBLING = 2  # of the grid of extinctions, from one depth to twice that
-MAX_OPTICAL_DEPTH = 12.0  # that a cell can tell
+LAYERS_PER_DOUBLING = 2  # layers of the grid of extinctions from one depth to twice that depth
+MAX_OPTICAL_DEPTH = 12.0  # that can be estimated for a cell
 BLUR_CELL_FACTOR = 4  # on a cell's side if Combined is blurred
 MIN_CELL = 4  # pixels along a cell's side
 

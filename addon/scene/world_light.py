@@ -8,7 +8,7 @@ import numpy as np
 from ..gather import images
 from . import materials
 
-IMAGE_ROWS = 512  # that an environment texture is reduced to, and twice as many columns
+IMAGE_ROWS = 512  # rows that an environment texture is reduced to, with twice as many columns
 
 
 def read(depsgraph: bpy.types.Depsgraph, cache: dict) -> np.ndarray | None:

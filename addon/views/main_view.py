@@ -8,8 +8,10 @@ from .. import gather
 from ..scene import cameras, materials
 from . import placement, ray_cast
 
-DEPTH_TOLERANCE = 1.01  # of a pixel's depth: points up to here count as visible; chosen by eye
-SURFACE_OFFSET = 1e-3  # of a pixel's depth, off the surface: well above the precision of depths; chosen by eye
+DEPTH_TOLERANCE = 1.01  # factor on a pixel's depth, up to which a point counts as visible; chosen by eye
+SURFACE_OFFSET = (
+    1e-3  # offset of a point off its surface, as a share of its depth: more than the precision of depths; chosen by eye
+)
 
 
 class MainView:

@@ -19,24 +19,24 @@ from itertools import product
 
 import numpy as np
 
-SCORING_PATHS = 1500  # that measure how much of the light is seen
-PLACEMENT_PATHS = 4000  # that views are chosen by. Few of them may find the light, through a door,
-PLACEMENT_POINTS = 2000  # so this many of their points are resampled by weight
-MAX_BOUNCES = 4  # of a path
-CANDIDATE_POSITIONS = 100  # tried for a view, on the paths
-MAX_EXCHANGE_ROUNDS = 3  # of replacing each chosen view
-MIN_GAIN = 0.005  # of all weight, that one more view must newly see
-VIEW_CLEARANCE = 0.01  # of the scene's size, between a view and any surface
+SCORING_PATHS = 1500  # paths that measure how much of the light is seen
+PLACEMENT_PATHS = 4000  # paths that views are chosen by. Few of them may find the light, through a door,
+PLACEMENT_POINTS = 2000  # so this many of their points are resampled, by weight
+MAX_BOUNCES = 4  # bounces of a path
+CANDIDATE_POSITIONS = 100  # positions on the paths that are tried for a view
+MAX_EXCHANGE_ROUNDS = 3  # rounds of replacing each chosen view
+MIN_GAIN = 0.005  # share of the weight that one more view must newly see
+VIEW_CLEARANCE = 0.01  # distance between a view and any surface, as a share of the scene's size
 MIN_VIEW_COSINE = 0.1  # between a surface's normal and a view that sees it: at less a pixel covers too much of it
-DARK_WEIGHT = 0.03  # of the mean direct light, added everywhere: paths end too early to find the light of dark surfaces
-MAX_COVERAGE_LOSS = 0.03  # of all weight: views that see less by more than this than when placed are placed anew
+DARK_WEIGHT = 0.03  # of the mean direct light, added everywhere: paths are too short to find the light of dark surfaces
+MAX_COVERAGE_LOSS = 0.03  # share of the light; if the views see that much less than when placed, they are placed anew
 
 # Tolerances, all chosen by eye.
-HIT_OFFSET = 1e-4  # of a ray's length: starts the next ray off the surface
+HIT_OFFSET = 1e-4  # offset of the next ray off the surface, as a share of the ray's length
 ALONG_PATH = 0.15, 0.85  # share of a path segment within which a view may stand: not at either surface
 KEEP_BONUS = 1.1  # factor on the gain of views that stand already, so that they don't move for little
-MIN_DISTANCE = 1e-4  # of the scene's size, between a view and a point that it sees
-VISIBILITY_GAP = 3e-3  # of the distance, by which a visibility ray ends before its point
+MIN_DISTANCE = 1e-4  # between a view and a point that it sees, as a share of the scene's size
+VISIBILITY_GAP = 3e-3  # share of the distance by which a visibility ray ends before its point
 
 DIRECTIONS = np.array([each for each in product((-1, 0, 1), repeat=3) if any(each)], float)
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]

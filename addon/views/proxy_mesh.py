@@ -9,8 +9,8 @@ area of those that it stands for.
 
 import numpy as np
 
-TRIANGLE_BUDGET = 100_000  # of the whole substitute, about
-MIN_TRIANGLES = 20  # of an instance, at least; a box has 12
+TRIANGLE_BUDGET = 100_000  # triangles of the whole substitute, about
+MIN_TRIANGLES = 20  # triangles of an instance; a box has 12
 MAX_COORDINATE = 1e18  # metres; its square is still a float32
 
 

@@ -12,9 +12,9 @@ from mathutils.bvhtree import BVHTree
 from . import meshes, proxy_mesh
 
 # Keep shadow rays from hitting the surface that they start on, and one that the lamp touches; both chosen by eye.
-SHADOW_RAY_OFFSET = 1e-3  # of the extent of all points, along the normal
-SHADOW_RAY_GAP = 5e-3  # of the distance to the lamp
-MAX_LAMPS = 8  # sampled at each call of direct_light() if there are more
+SHADOW_RAY_OFFSET = 1e-3  # along the normal, as a share of the extent of all points
+SHADOW_RAY_GAP = 5e-3  # at the lamp, as a share of the distance to it
+MAX_LAMPS = 8  # lamps sampled at each call of direct_light() if there are more
 
 
 class Geometry:
