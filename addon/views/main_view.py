@@ -9,9 +9,7 @@ from ..scene import cameras, materials
 from . import placement, ray_cast
 
 DEPTH_TOLERANCE = 1.01  # factor on a pixel's depth, up to which a point counts as visible; chosen by eye
-SURFACE_OFFSET = (
-    1e-3  # offset of a point off its surface, as a share of its depth: more than the precision of depths; chosen by eye
-)
+SURFACE_OFFSET = 1e-3  # of a point off its surface, as a share of its depth: above the depth's precision; chosen by eye
 
 
 class MainView:
