@@ -283,7 +283,7 @@ PARAMETERS = (
         "Views at Most",
         "Maximum number of automatic views. Fewer are placed, at less cost, if another one would capture little new "
         "light",
-        {"default": 7, "min": 1, "max": needs.MOST_VIEWS},
+        {"default": 7, "min": 1, "max": needs.MAX_VIEWS},
         panel=VIEWS,
         methods=RADIOSITY,
         active=lambda settings: settings.views == "AUTOMATIC",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The passes of a view layer: those that Afterlight reads are switched on, and off again when nobody needs them."""
+"""The passes of a view layer: Afterlight switches on those that it reads, and off again when nobody needs them."""
 
 from ..host.assign import assign
 from ..scene import needs, passes, roughness, transmittance
@@ -14,44 +14,47 @@ _ALL = dict(
         roughness.DIRECT,
         roughness.MATERIAL,
         *transmittance.PASSES,
-        freestyle.LINES,
+        freestyle.LINE_PASS,
     )
 )
 
 
-def of_the_gather(scene, layer):
-    """(switch, pass) of all that the gather reads of a view layer."""
+def for_gather(scene, layer):
+    """(switch, pass) of each pass of a view layer that the gather reads. switch: property path from the view layer."""
     settings = scene.afterlight
-    shines = settings.use_glossy and needs.has_views(settings)
-    return [*((switch, name) for _, switch, name, _ in needed(settings)), *(roughness.needed(layer) if shines else ())]
+    is_glossy = settings.use_glossy and needs.has_views(settings)
+    return [
+        *((switch, name) for _, switch, name, _ in needed(settings)),
+        *(roughness.needed(layer) if is_glossy else ()),
+    ]
 
 
 def wanted(scene, layer):
-    """(switch, pass) of all that is read of a view layer."""
-    return [*of_the_gather(scene, layer), *transmittance.needed(scene), *freestyle.needed(scene, layer)]
+    """(switch, pass) of each pass of a view layer that Afterlight reads."""
+    return [*for_gather(scene, layer), *transmittance.needed(scene), *freestyle.needed(scene, layer)]
 
 
-def switch(scene, layer, read):
-    """Switch on the passes in `read`, (switch, pass) each, and off those that we once switched on and that are not
-    among them, but for passes that the user's own nodes have come to use."""
-    ours, wanted_now = _ours(layer), {each for each, _ in read}
-    unwanted = ours - wanted_now
-    used = nodes.used_passes(scene, layer.name) if unwanted else ()
-    for each, name in _ALL.items():
-        if each in wanted_now and not passes.is_on(layer, each):
-            ours.add(each)
-            passes.turn(layer, each, True)
-        elif each in unwanted and name not in used:
-            passes.turn(layer, each, False)
-    assign(layer.afterlight, "passes", ",".join(sorted(ours - unwanted)))
+def switch(scene, layer, needed_passes):
+    """Switch on the needed passes, (switch, pass) each, and off those that we once switched on and that are no longer
+    needed, except for passes that the user's own nodes have come to use."""
+    ours, needed_paths = _ours(layer), {path for path, _ in needed_passes}
+    no_longer_needed = ours - needed_paths
+    used = nodes.used_passes(scene, layer.name) if no_longer_needed else ()
+    for path, name in _ALL.items():
+        if path in needed_paths and not passes.is_on(layer, path):
+            ours.add(path)
+            passes.set_enabled(layer, path, True)
+        elif path in no_longer_needed and name not in used:
+            passes.set_enabled(layer, path, False)
+    assign(layer.afterlight, "passes", ",".join(sorted(ours - no_longer_needed)))
 
 
 def adopt(scene):
-    """Take over the record of a file of 0.1.0 to 0.3.0: a custom property that lists switches."""
+    """Take over the record of a file from 0.1.0 to 0.3.0: a custom property that lists switches."""
     for layer in scene.view_layers:
-        found = layer.get(MARK)
-        if isinstance(found, list) and found and all(isinstance(each, str) and each in _ALL for each in found):
-            assign(layer.afterlight, "passes", ",".join(found))
+        paths = layer.get(MARK)
+        if isinstance(paths, list) and paths and all(isinstance(path, str) and path in _ALL for path in paths):
+            assign(layer.afterlight, "passes", ",".join(paths))
             del layer[MARK]
 
 

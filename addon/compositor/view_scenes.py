@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The further cameras whose pixels light the picture: a helper scene for each, and how they get into the render.
+"""The helper scenes of the views: one that places them, and one for each view, through which EEVEE renders it.
 
-    Render Layers nodes at the top level, in the order in which Blender renders their scenes:
-        scout      our engine (views_engine.py): it sees the finished main view, poses the views, and says which are
-        needed view 1..n  EEVEE, each through a camera of its own (view_cameras.py), with the lit scene as background
-        set
-        light      our engine (engine.py): it gathers from all of them
+Render Layers nodes at the top level of the compositor, in the order in which Blender renders their scenes:
 
-At rest no view layer of these scenes is rendered. The scout switches on what the frame needs, reset() switches it off
-again: a view that is not needed costs nothing, nor does any where the extension is missing.
+    placement  our engine (render/views_engine.py): reads the finished main view, sets the cameras of the views, and
+               says which views this frame needs
+    view 1..n  EEVEE, each through its own camera (scene/view_cameras.py), with the lit scene as background set
+    light      our engine (render/engine.py): gathers the light from the passes of all views
+
+While nothing renders, the view layers of the views are switched off. The placement engine switches on those that
+the frame needs, and leave_all_out() switches them off again: a view that is not needed costs nothing, and neither do
+the views where the extension is missing.
 """
 
 import bpy
@@ -20,15 +22,15 @@ from ..host.roles import SCOUT, VIEW
 from ..scene import needs, passes, roughness
 from ..translations import say
 from ..views import placement
-from . import nodes
+from . import nodes, render_order
 
-SCOUT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
-MOST = needs.MOST_VIEWS
-FARTHEST = 1e9  # metres from the world's origin that a pose may be
-PLACED = "placed"  # custom property of the scout's scene
-SAMPLES = 1  # EEVEE's; the pixels are averaged down afterwards
+PLACEMENT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
+MAX_VIEWS = needs.MAX_VIEWS
+MAX_DISTANCE = 1e9  # metres of a stored pose from the world's origin
+PLACEMENT_KEY = "placed"  # custom property of the placement scene
+SAMPLES = 1  # EEVEE's samples of a view; the gather averages its pixels down anyway
 
-# What of the lit scene decides how its surfaces look and where they are. EEVEE's own settings are mirrored all.
+# Properties of the lit scene that affect its geometry and materials. EEVEE's own settings are all mirrored.
 _RENDER = (
     "use_simplify",
     "simplify_subdivision_render",
@@ -55,31 +57,31 @@ _LAYER = (
     "use_volumes",
     "use_grease_pencil",
 )
-_EEVEE_OWN = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
+_EEVEE_OVERRIDES = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
 
 
-def scout(scene):
+def placement_scene(scene):
     """The scene whose engine places the views of `scene`, or None."""
     return next((each for each in _own(scene) if each.afterlight.role == SCOUT), None)
 
 
 def scenes(scene):
-    """The scenes through which EEVEE renders the views of `scene`, in their order."""
+    """The scenes through which EEVEE renders the views of `scene`, in order."""
     return [each for each in _own(scene) if each.afterlight.role == VIEW]
 
 
 def connect(scene, tree, helper):
-    """Make, or take away, what the views of `scene` need: their scenes, and their nodes in the compositor `tree`,
-    before those of `helper`. Changes nothing that is in place already."""
-    strangers = _ensure_scenes(scene)
+    """Make or remove the view scenes as `scene` needs them, and their nodes in the compositor `tree`, before those of
+    `helper`. Leaves alone what is already in place."""
+    foreign_scenes = _ensure_scenes(scene)
     mirror(scene)
     ours = _own(scene)
     for node in [node for node in tree.nodes if nodes.role(node) == "view"]:
-        if node.scene is None or node.scene in strangers:
+        if node.scene is None or node.scene in foreign_scenes:
             tree.nodes.remove(node)
     _ensure_nodes(tree, ours)
     if ours:
-        nodes.move_behind(
+        render_order.render_after(
             tree,
             [node for node in tree.nodes if nodes.shows(node, helper)],
             [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours],
@@ -87,7 +89,7 @@ def connect(scene, tree, helper):
 
 
 def disconnect(scene):
-    """Take out the scenes that connect() put in."""
+    """Remove the scenes that connect() made."""
     ours = [*roles.own(scene, SCOUT), *roles.own(scene, VIEW)]
     scene.afterlight.view_scenes.clear()
     for each in ours:
@@ -95,190 +97,199 @@ def disconnect(scene):
 
 
 def follow(scene):
-    """Bring the view scenes in line with `scene` as it is now: its name, its settings."""
+    """Bring the view scenes in line with the name and settings of `scene`."""
     mirror(scene)
     for index, each in enumerate(_own(scene)):
         name = _name(scene, index)
-        if not each.name.startswith(name):  # Blender may have put a number behind it
+        if not each.name.startswith(name):  # Blender may have appended a number
             each.name = name
 
 
 def mirror(scene):
-    """Give the view scenes what decides how the surfaces of `scene` look."""
+    """Copy the properties of `scene` that decide how its surfaces look to its view scenes."""
     layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
     for each in _own(scene):
-        own = each.view_layers[0]
+        view_layer = each.view_layers[0]
         for source, target, names in (
             (scene, each, _SCENE),
             (scene.render, each.render, _RENDER),
-            (layer, own, _LAYER),
+            (layer, view_layer, _LAYER),
         ):
             for name in names:
                 assign(target, name, getattr(source, name))
         for prop in scene.eevee.bl_rna.properties:
             if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
                 assign(
-                    each.eevee, prop.identifier, _EEVEE_OWN.get(prop.identifier, getattr(scene.eevee, prop.identifier))
+                    each.eevee,
+                    prop.identifier,
+                    _EEVEE_OVERRIDES.get(prop.identifier, getattr(scene.eevee, prop.identifier)),
                 )
-        assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE leaves out lights by it
+        assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE skips lights depending on it
         assign(each, "background_set", scene)
         for switch, _ in (roughness.COLOR, roughness.DIRECT):
-            assign(own, switch, each.afterlight.role == VIEW and needs.glossy_light(scene))
+            assign(view_layer, switch, each.afterlight.role == VIEW and needs.glossy_light(scene))
 
 
-def faults(scene):
-    """Whether something of what connect() makes is missing."""
+def is_incomplete(scene):
+    """Whether any scene or node that connect() makes is missing."""
     ours = _own(scene)
-    if len(ours) != _held(scene) or any(each.camera is None or each.camera != roles.camera(each) for each in ours):
+    if len(ours) != _scene_count(scene) or any(
+        each.camera is None or each.camera != roles.camera(each) for each in ours
+    ):
         return True
     tree = scene.compositing_node_group
-    found = [node.scene for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours] if tree else []
-    return found != ours
+    shown_scenes = (
+        [node.scene for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours] if tree else []
+    )
+    return shown_scenes != ours
 
 
 def leave_all_out():
-    """No view is rendered until the views' engine says so."""
+    """Switch off all views; the placement engine switches on those that a frame needs."""
     for each in bpy.data.scenes:
-        if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.source(each):
+        if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.lit_scene(each):
             assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
 
 
-def placed(scene):
-    """The placement.Placement that the file holds for `scene`, or None where it holds none that makes sense."""
-    holder = scout(scene)
-    return _read_placed(holder.get(PLACED)) if holder else None
+def stored_placement(scene):
+    """The placement.Placement that the file holds for `scene`; None if it holds none, or none that is valid."""
+    holder = placement_scene(scene)
+    return _checked_placement(holder.get(PLACEMENT_KEY)) if holder else None
 
 
-def keep_placed(scene, found):
-    """Store a placement in the file: the frames to come begin with it."""
-    scout(scene)[PLACED] = {
-        "poses": np.array(found.poses, float).ravel().tolist(),
-        "coverage": list(found.coverage),
-        "clearance": found.clearance,
+def store_placement(scene, placement_found):
+    """Store a placement.Placement in the file. The next frames start from it."""
+    placement_scene(scene)[PLACEMENT_KEY] = {
+        "poses": np.array(placement_found.poses, float).ravel().tolist(),
+        "coverage": list(placement_found.coverage),
+        "clearance": placement_found.clearance,
     }
 
 
-def forget_placed(scene):
-    """The next frame places the views anew."""
-    scout(scene).pop(PLACED, None)
+def forget_placement(scene):
+    """Make the next frame place the views anew."""
+    placement_scene(scene).pop(PLACEMENT_KEY, None)
 
 
 def prepare(scene):
-    """A frame's views are about to be chosen: none is in it as yet, and all look as `scene` does."""
+    """Prepare a frame before its views are chosen: leave all views out, and mirror `scene` to them."""
     for view in scenes(scene):
-        drop(view)
+        leave_out(view)
     mirror(scene)
 
 
-def drop(view):
+def leave_out(view):
     """Leave a view scene out of this frame."""
     assign(view.view_layers[0], "use", False)
 
 
-def posed(scene):
-    """The view scenes that are rendered in this frame, in their order."""
+def rendered_views(scene):
+    """The view scenes that are rendered in this frame, in order."""
     tree = scene.compositing_node_group
     shown = [node.scene for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and not node.mute]
     return [each for each in scenes(scene) if each in shown and each.view_layers[0].use]
 
 
-def unusable(thing):
-    """Why an object that the user lists can't be a view, as a sentence for people; empty where it can."""
-    if thing is None:
+def unusable(camera_object):
+    """Why an object from the user's list can't be a view, as a sentence for people; empty if it can."""
+    if camera_object is None:
         return say("A view in the list has no camera. Choose one, or remove the entry")
-    if thing.type != "CAMERA":
-        return say('The view "{}" is not a camera object and was left out. Choose a camera instead', thing.name)
-    if thing.data.type not in {"PERSP", "ORTHO"}:
+    if camera_object.type != "CAMERA":
+        return say('The view "{}" is not a camera object and was left out. Choose a camera instead', camera_object.name)
+    if camera_object.data.type not in {"PERSP", "ORTHO"}:
         return say(
-            'The view "{}" is panoramic and was left out. Set its Lens Type to Perspective or Orthographic', thing.name
+            'The view "{}" is panoramic and was left out. Set its Lens Type to Perspective or Orthographic',
+            camera_object.name,
         )
     return ""
 
 
-def _read_placed(stored):
-    """placement.Placement of what a file holds, None where that is no placement: anybody may have written it."""
+def _checked_placement(stored):
+    """placement.Placement of a custom property, None if the values are invalid: anybody may have written them."""
     try:
         poses = np.array(stored["poses"], float).reshape(-1, 4, 4)
         coverage, clearance = np.array(stored["coverage"], float).ravel(), float(stored["clearance"])
     except (TypeError, KeyError, ValueError, AttributeError):
         return None
-    turns = poses[:, :3, :3].clip(-2, 2)
+    rotations = poses[:, :3, :3].clip(-2, 2)
     is_sound = (
-        len(poses) <= MOST
+        len(poses) <= MAX_VIEWS
         and len(coverage) == len(poses) + 1
         and (np.abs(coverage - 0.5) < 0.51).all()
-        and 0 < clearance < FARTHEST
-        and (np.abs(poses[:, :3, 3]) < FARTHEST).all()
-        and np.allclose(turns @ turns.transpose(0, 2, 1), np.eye(3), atol=1e-3)
+        and 0 < clearance < MAX_DISTANCE
+        and (np.abs(poses[:, :3, 3]) < MAX_DISTANCE).all()
+        and np.allclose(rotations @ rotations.transpose(0, 2, 1), np.eye(3), atol=1e-3)
         and np.array_equal(poses[:, 3], np.tile((0.0, 0, 0, 1), (len(poses), 1)))
     )
     return placement.Placement(list(poses), coverage.tolist(), clearance) if is_sound else None
 
 
 def _own(scene):
-    """The scenes of `scene` in their order: that of the scout, and those of the views."""
+    """The placement scene and the view scenes of `scene`, in order."""
     return [
         each.scene
         for each in scene.afterlight.view_scenes
-        if each.scene is not None and roles.source(each.scene) == scene and each.scene.afterlight.role in {SCOUT, VIEW}
+        if each.scene is not None
+        and roles.lit_scene(each.scene) == scene
+        and each.scene.afterlight.role in {SCOUT, VIEW}
     ]
 
 
-def _held(scene):
-    """How many scenes `scene` needs: the scout, and one for each view."""
+def _scene_count(scene):
+    """How many such scenes `scene` needs: one for the placement, and one for each view; 0 without views."""
     views = needs.views(scene)
     return views + 1 if views else 0
 
 
 def _ensure_scenes(scene):
-    """Make the scenes that are missing, and remove those that are not needed any more. Returns the scenes that `scene`
-    names and that are not its own: those of which it is a copy."""
-    held, views = scene.afterlight.view_scenes, max(_held(scene) - 1, 0)
-    named = [each.scene for each in held if each.scene is not None]
-    found = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
-    strangers = set(named) - set(found[SCOUT]) - set(found[VIEW])
+    """Make missing scenes and remove superfluous ones. Returns the scenes that `scene` names but that belong to
+    another: the scene that it was copied from."""
+    slots, views = scene.afterlight.view_scenes, max(_scene_count(scene) - 1, 0)
+    named = [each.scene for each in slots if each.scene is not None]
+    by_role = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
+    foreign_scenes = set(named) - set(by_role[SCOUT]) - set(by_role[VIEW])
     for role, count in ((SCOUT, 1 if views else 0), (VIEW, views)):
-        for each in found[role][count:]:
+        for each in by_role[role][count:]:
             roles.remove(each)
-        del found[role][count:]
-        made = [_new(scene, role, len(found[role]) + number) for number in range(count - len(found[role]))]
-        found[role] += made
-    ours = [*found[SCOUT], *found[VIEW]]
-    if named != ours or len(held) != len(ours):
-        held.clear()
+        del by_role[role][count:]
+        new_scenes = [_new(scene, role, len(by_role[role]) + number) for number in range(count - len(by_role[role]))]
+        by_role[role] += new_scenes
+    ours = [*by_role[SCOUT], *by_role[VIEW]]
+    if named != ours or len(slots) != len(ours):
+        slots.clear()
         for each in ours:
-            held.add().scene = each
+            slots.add().scene = each
     for each in ours:
         roles.give_camera(each)
-    return strangers
+    return foreign_scenes
 
 
 def _new(scene, role, index):
     is_view = role == VIEW
-    made = roles.new(
+    scene_made = roles.new(
         scene, role, _name(scene, index + 1 if is_view else 0), engines.EEVEE if is_view else engines.VIEWS
     )
-    roles.give_camera(made)
-    layer = made.view_layers[0]
+    roles.give_camera(scene_made)
+    layer = scene_made.view_layers[0]
     for _, switch, _, _ in passes.PASSES:
         setattr(layer, switch, is_view)
-    # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated. It has no
-    # background yet: a whole scene evaluated here would stay in memory.
+    # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated. Evaluate it before
+    # it gets a background set: a whole scene evaluated here would stay in memory.
     layer.update()
     layer.use = not is_view
-    return made
+    return scene_made
 
 
 def _name(scene, index):
-    return (VIEW_NAME.format(index, scene.name) if index else SCOUT_NAME.format(scene.name))[:250]
+    return (VIEW_NAME.format(index, scene.name) if index else PLACEMENT_NAME.format(scene.name))[:250]
 
 
 def _ensure_nodes(tree, ours):
-    found = [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours]
-    if [node.scene for node in found] == ours:
+    view_nodes = [node for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours]
+    if [node.scene for node in view_nodes] == ours:
         return
-    for node in found:
+    for node in view_nodes:
         tree.nodes.remove(node)
     for index, each in enumerate(ours):
-        node = nodes.view_node(tree, each)
+        node = nodes.new_view_node(tree, each)
         node.location = (-700, -400 - 50 * index)

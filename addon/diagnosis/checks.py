@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..compositor import setup
+from ..compositor import faults
 from ..host import engines, render_lock, roles
 from ..host.version import VERSION
 from ..scene import needs
@@ -60,7 +60,7 @@ def holds_reflections(scene):
 
 
 def _of_helper(scene):
-    lit = roles.source(scene)
+    lit = roles.lit_scene(scene)
     if lit is None:
         return Finding(
             say("This helper scene's owner was deleted, or it is a copy of a helper scene. You can delete it")
@@ -130,7 +130,7 @@ def _of_ray_tracing(scene):
 
 def _of_nodes(scene):
     if scene.afterlight.enabled:
-        for text, fix in setup.faults(scene).items():
+        for text, fix in faults.find(scene).items():
             yield Finding(text, fix)
 
 

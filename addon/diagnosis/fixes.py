@@ -80,7 +80,7 @@ def _no_probes(context):
 
 
 def _show_lit(context):
-    context.window.scene = roles.source(context.scene)
+    context.window.scene = roles.lit_scene(context.scene)
 
 
 def _render_layers(context):

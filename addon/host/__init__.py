@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender as a host: its main thread, handlers, temporary files, reports, and which scenes are ours."""
+"""Blender as a host: its main thread, handlers, temporary files, messages, and which scenes belong to Afterlight."""

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's lists of handlers."""
+"""Adding and removing functions in Blender's lists of handlers (bpy.app.handlers)."""
 
 import bpy
 
 
 def listen(handlers):
-    """Have Blender call functions: (name of one of its lists, function) each."""
+    """Add functions to Blender's handlers: pairs of (name of the list, function)."""
     for event, handler in handlers:
         getattr(bpy.app.handlers, event).append(handler)
 
 
 def call_last(event, call):
-    """Have Blender make a call once, after all handlers of the event that it is calling right now."""
+    """Call `call` once, after all other handlers of the event that Blender is handling now."""
     called = getattr(bpy.app.handlers, event)
 
     def last(*_):
@@ -22,7 +22,7 @@ def call_last(event, call):
 
 
 def ignore(handlers):
-    """Undo listen(). Loading factory settings may have done so already."""
+    """Remove what listen() added. Loading factory settings may have removed it already."""
     for event, handler in handlers:
         if handler in getattr(bpy.app.handlers, event):
             getattr(bpy.app.handlers, event).remove(handler)

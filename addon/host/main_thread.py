@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The GPU and the file in a window: taken by turns with the interface.
+"""A queue of calls for the main thread: GPU work and changes to the file while a render runs in its own thread.
 
-A render has a thread of its own there. Blender lends it the GPU only together with the lock that its interface draws
-under, and so for the whole of our part nothing could be drawn, and no ESC be seen. Therefore our engine asks for none:
-what it wants of the GPU it leaves here, a call at a time, and the main thread makes the calls between two looks at the
-window.
+In a window a render has its own thread. Blender lends that thread the GPU only together with the lock that the
+interface needs for drawing, so the interface would freeze, and ESC go unnoticed, for all of our part of the render. Our
+engine therefore does not ask for the GPU. It puts each GPU call into this queue, and the main thread makes the calls in
+short slices between two looks at the window.
 
-So is whatever changes the file during a render. To set a property tags all dependency graphs, and Blender crashes where
-the main thread builds one at that moment.
+Changes to the file during a render go the same way: setting a property tags all dependency graphs, and Blender crashes
+if the main thread is building one at that moment.
 """
 
 import queue
@@ -21,21 +21,21 @@ import bpy
 
 from .. import gather
 
-TURN = 0.02  # seconds of calls before the window has its turn
-GAP = 0.002  # seconds that a turn waits for the next call
-RENDERING, IDLE = 0.0, 0.1  # seconds until the next look: while something renders, and else
-PATIENCE = 0.05  # seconds that a call waits before it asks whether it is still wanted
-SURELY = 0.5  # seconds that one waits which must be made
+TURN_SECONDS = 0.02  # how long the main thread makes calls before it looks at the window again
+NEXT_CALL_WAIT = 0.002  # seconds that such a turn waits for the next call
+RENDER_INTERVAL, IDLE_INTERVAL = 0.0, 0.1  # seconds between two turns: during a render, and otherwise
+CALL_POLL_INTERVAL = 0.05  # seconds between two checks whether a waiting call is still wanted
+MUST_RUN_TIMEOUT = 0.5  # seconds that a mandatory call waits for the main thread
 
-_calls = queue.SimpleQueue()  # (Future, call); global, since the main thread is one
-_open = False  # whether anybody makes the calls; global like the queue
-# Whether the render stops whose thread this is; global, and yet of one thread.
+_calls = queue.SimpleQueue()  # (Future, call); global, since there is one main thread
+_takes_calls = False  # whether the main thread makes calls; global like the queue
+# Says whether the render of the current thread is to stop; global, but each thread has its own value.
 _stopped = ContextVar("stopped", default=lambda: False)
 
 
 @contextmanager
-def until(stopped):
-    """What waits for its turn within gives up as soon as stopped() is true."""
+def cancel_when(stopped):
+    """Context in which waiting calls raise gather.Cancelled as soon as stopped() is true."""
     before = _stopped.set(stopped)
     try:
         yield
@@ -44,40 +44,40 @@ def until(stopped):
 
 
 def run(call):
-    """Have the main thread make a call: returns what it returns, raises what it raises. Raises gather.Cancelled instead
-    when the render is to stop, or nobody makes calls any more."""
+    """Make a call in the main thread: returns what it returns and raises what it raises. Raises gather.Cancelled
+    instead if the render is to stop or the main thread makes no more calls."""
     if _is_main():
         return call()
     if _stopped.get()():
         raise gather.Cancelled
-    future = _leave(call)
-    while not future.done():
+    pending = _enqueue(call)
+    while not pending.done():
         try:
-            future.exception(timeout=PATIENCE)
+            pending.exception(timeout=CALL_POLL_INTERVAL)
         except TimeoutError:
-            if (_stopped.get()() or not _open) and future.cancel():
+            if (_stopped.get()() or not _takes_calls) and pending.cancel():
                 raise gather.Cancelled from None
-    return future.result()
+    return pending.result()
 
 
-def surely(call):
-    """As run(), for what must be put back though the render is to stop: made here where the main thread does not come
-    round to it, since it waits for the end of the render."""
+def must_run(call):
+    """Make a call in the main thread even if the render is to stop: for settings that must be put back. If the main
+    thread does not get to it in time, because it is waiting for the end of the render, the call is made here."""
     if _is_main():
         return call()
-    future = _leave(call)
+    pending = _enqueue(call)
     try:
-        return future.result(timeout=SURELY)
+        return pending.result(timeout=MUST_RUN_TIMEOUT)
     except TimeoutError:
-        return call() if future.cancel() else future.result()
+        return call() if pending.cancel() else pending.result()
 
 
 def later(call):
-    """Have the main thread make a call when it comes round to it."""
+    """Make a call in the main thread without waiting for it; immediately if this is the main thread."""
     if _is_main():
         call()
     else:
-        _leave(call)
+        _enqueue(call)
 
 
 class MainThread:
@@ -91,58 +91,58 @@ class MainThread:
 
 
 def after_render(call):
-    """Make a call that returns None when no render is under way: now, or soon."""
+    """Make a call, which returns None, once no render is running: immediately, or by a timer."""
     if bpy.app.background or not bpy.app.is_job_running("RENDER"):
         call()
     else:
-        bpy.app.timers.register(lambda: IDLE if bpy.app.is_job_running("RENDER") else call(), persistent=True)
+        bpy.app.timers.register(lambda: IDLE_INTERVAL if bpy.app.is_job_running("RENDER") else call(), persistent=True)
 
 
-def _leave(call):
-    """The Future of a call that the main thread is to make."""
-    future = Future()
-    _calls.put((future, call))
-    return future
+def _enqueue(call):
+    """Queue a call for the main thread. Returns its Future."""
+    pending = Future()
+    _calls.put((pending, call))
+    return pending
 
 
 def _is_main():
     return threading.current_thread() is threading.main_thread()
 
 
-def _take():
-    """Make calls for a moment; Blender asks again when it has looked after its window."""
-    end, wait = time.perf_counter() + TURN, 0.0
-    while (left := end - time.perf_counter()) > 0:
+def _make_calls():
+    """A timer: make queued calls for one turn. Returns the seconds until the next turn, None to end."""
+    slice_end, timeout = time.perf_counter() + TURN_SECONDS, 0.0
+    while (seconds_left := slice_end - time.perf_counter()) > 0:
         try:
-            future, call = _calls.get(timeout=min(left, wait))
+            pending, call = _calls.get(timeout=min(seconds_left, timeout))
         except queue.Empty:
             break
-        _make(future, call)
-        wait = GAP
-    if wait:
+        _make_call(pending, call)
+        timeout = NEXT_CALL_WAIT
+    if timeout:
         gather.device.settle()
     if bpy.app.is_job_running("RENDER"):
-        return RENDERING
-    return IDLE if _open else None
+        return RENDER_INTERVAL
+    return IDLE_INTERVAL if _takes_calls else None
 
 
-def _make(future, call):
-    if future.set_running_or_notify_cancel():
+def _make_call(pending, call):
+    if pending.set_running_or_notify_cancel():
         try:
-            future.set_result(call())
+            pending.set_result(call())
         except BaseException as error:
-            future.set_exception(error)
+            pending.set_exception(error)
 
 
 def register():
-    global _open
+    global _takes_calls
     if not bpy.app.background:
-        _open = True
+        _takes_calls = True
         gather.device.use_executor(MainThread())
-        bpy.app.timers.register(_take, persistent=True)
+        bpy.app.timers.register(_make_calls, persistent=True)
 
 
 def unregister():
-    """A render that is under way is not lit any more, and what it leaves behind is still freed."""
-    global _open
-    _open = False
+    """Make no more calls. A running render is no longer lit; the GPU memory that it leaves is still freed."""
+    global _takes_calls
+    _takes_calls = False

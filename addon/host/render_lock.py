@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a render is under way, and which scenes must wait for its end.
+"""Whether a render is running, and which scenes must wait for its end to be set up or cleared.
 
-From its beginning on Blender holds the scenes and the compositor of a render: adding or removing some then, from a
-handler, a timer, a driver or a thread, crashes Blender. Whoever wants to asks postpones() first; the scenes that had
-to wait are set up, or cleared, when the render is over.
+From its start Blender holds pointers to the scenes and the compositor of a render: adding or removing any of them then,
+from a handler, a timer, a driver or a thread, crashes Blender. Code that wants to do so asks postpones() first; the
+postponed scenes are set up, or cleared, when the render is over.
 """
 
-# For each render that goes on, whether it is locked: one may begin within another's handlers. Global, and no part of
-# render/job.py, since whatever changes the file asks here, below the render.
+# For each running render, whether it is locked; one may begin within another's handlers. Global, and no part of
+# render/job.py, since lower layers ask before they change the file.
 _renders = []
-_waiting = set()  # session_uids of scenes; global, since they wait for whichever render ends last
+_waiting = set()  # session_uids of postponed scenes; global, since they wait for whichever render ends last
 
 
 def begin():
@@ -18,14 +18,13 @@ def begin():
 
 
 def lock():
-    """Blender begins to evaluate the scenes of the render."""
+    """Blender begins to evaluate the scenes of the render: from now on the file must not be changed."""
     if _renders:
         _renders[-1] = True
 
 
 def end():
-    """The render is over. Returns the session_uids of the scenes that had to wait; empty while another render goes
-    on."""
+    """The render is over. Returns the session_uids of the postponed scenes; empty while another render is running."""
     if _renders:
         _renders.pop()
     if is_locked():
@@ -36,23 +35,23 @@ def end():
 
 
 def is_locked():
-    """Whether scenes and nodes must stay as they are."""
+    """Whether scenes and nodes must not be added or removed."""
     return any(_renders)
 
 
 def postpones(scene):
-    """Whether `scene` can't be set up or cleared now; it is then when the render is over."""
+    """Whether `scene` can't be set up or cleared now. If so it is noted, and handled when the render is over."""
     if is_locked():
         _waiting.add(scene.session_uid)
     return is_locked()
 
 
 def is_postponed(scene):
-    """Whether `scene` waits for the end of the render."""
+    """Whether `scene` is waiting for the end of the render."""
     return scene.session_uid in _waiting
 
 
 def reset():
-    """Another file is loaded, or the extension goes."""
+    """Forget all renders: another file was loaded, or the extension is being disabled."""
     _renders.clear()
     _waiting.clear()

@@ -1,29 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which scenes of the file are ours: those that Afterlight made to render another one, and their cameras.
+"""Which scenes of the file are ours: the helper scenes that Afterlight made to render another scene, and their cameras.
 
-A scene is ours only if two sides say so: its own mark (`afterlight.role`, and `afterlight.serves`, the scene that it
-helps to light), and a record: the lit scene names it, or this process has seen it being ours. A pointer that somebody
-remapped, a copy, or a custom property of the same name is no more than a claim; such scenes are the user's and stay as
-they are.
+A scene is ours only if two sources agree: its own mark (`afterlight.role`, and `afterlight.serves`, the scene that it
+helps to light), and a record (the lit scene names it, or it was ours earlier in this process). A pointer that was
+remapped, a copied scene or a custom property of the same name is only a claim; such scenes belong to the user and stay
+as they are.
+
+Roles: HELPER, the scene whose engine gathers the light; SCOUT, the scene whose engine places the views; VIEW, a scene
+through which EEVEE renders one view. They are stored in files and must not change.
 """
 
 import bpy
 
 HELPER, SCOUT, VIEW = "HELPER", "SCOUT", "VIEW"
-SIDE = 4  # pixels along a side of the frame of our scenes: they are rendered at the lit scene's
+FRAME_SIDE = 4  # resolution stored in our scenes, in pixels, by which they are known; they render at the lit scene's
 MARK = "afterlight"  # custom property of our nodes, trees and cameras, and of the scenes of 0.1.0 to 0.3.0
 
-# session_uids of scenes that were ours at some moment of this session; global, since the file alone can be made up.
+# session_uids of scenes that were ours at some time in this process; global, since the file alone can be made up.
 _seen = set()
 
 
 def is_helper(scene):
-    """Whether the scene says that it only helps to light another. True of the copies that a user makes, too."""
+    """Whether a scene claims to help light another one. Also true of a user's copy of such a scene."""
     return bool(scene.afterlight.role)
 
 
-def source(scene):
-    """The scene that `scene` helps to light if it is ours, else None."""
+def lit_scene(scene):
+    """The scene that `scene` helps to light; None if `scene` is not ours."""
     lit = scene.afterlight.serves
     if lit is None or not is_helper(scene) or not _has_our_size(scene):
         return None
@@ -34,64 +37,64 @@ def source(scene):
 
 
 def recorded(lit):
-    """The scenes that `lit` names as its own, ours or not."""
+    """The scenes that `lit` names as its helper and view scenes, whether they are ours or not."""
     settings = lit.afterlight
     return [scene for scene in (settings.helper, *(each.scene for each in settings.view_scenes)) if scene is not None]
 
 
 def own(lit, role):
-    """Our scenes that serve `lit` in a role, those first that it names."""
+    """Our scenes that serve `lit` in this role; those that it names come first, in its order."""
     named = recorded(lit)
-    found = [scene for scene in bpy.data.scenes if scene.afterlight.role == role and source(scene) == lit]
-    return sorted(found, key=lambda scene: named.index(scene) if scene in named else len(named))
+    scenes = [scene for scene in bpy.data.scenes if scene.afterlight.role == role and lit_scene(scene) == lit]
+    return sorted(scenes, key=lambda scene: named.index(scene) if scene in named else len(named))
 
 
 def new(lit, role, name, engine):
-    """A scene that serves `lit`. It is ours as soon as `lit` names it."""
+    """Make a scene that serves `lit`. It counts as ours from now on."""
     scene = bpy.data.scenes.new(name)
     scene.afterlight.role, scene.afterlight.serves = role, lit
     _seen.add(scene.session_uid)
     scene.render.engine = engine
-    scene.render.resolution_x = scene.render.resolution_y = SIDE
+    scene.render.resolution_x = scene.render.resolution_y = FRAME_SIDE
     return scene
 
 
 def give_camera(scene):
-    """Let one of our scenes look through a camera of its own. Does nothing where it does."""
+    """Make one of our scenes use a camera of its own. Does nothing if it already does."""
     if camera(scene) is None:
         data = bpy.data.cameras.new(scene.name)
-        made = bpy.data.objects.new(scene.name, data)
-        made[MARK] = data[MARK] = "camera"
-        scene.collection.objects.link(made)
-        scene.afterlight.own_camera = made
+        camera_object = bpy.data.objects.new(scene.name, data)
+        camera_object[MARK] = data[MARK] = "camera"
+        scene.collection.objects.link(camera_object)
+        scene.afterlight.own_camera = camera_object
     if scene.camera != camera(scene):
         scene.camera = camera(scene)
 
 
 def camera(scene):
-    """The camera that we made for one of our scenes; None where it is gone, or where the user put another in its
-    place."""
-    found = scene.afterlight.own_camera
-    is_whole = _is_our_camera(found) and found.data.get(MARK) == "camera" and found.data.users == 1
-    return found if is_whole and scene in found.users_scene else None
+    """The camera that we made for one of our scenes; None if it was deleted or the user replaced or changed it."""
+    own_camera = scene.afterlight.own_camera
+    is_intact = _is_our_camera(own_camera) and own_camera.data.get(MARK) == "camera" and own_camera.data.users == 1
+    return own_camera if is_intact and scene in own_camera.users_scene else None
 
 
 def remove(scene):
-    """Remove one of our scenes and its camera. Where the user has put things into it, it becomes the user's instead."""
-    ours = scene.afterlight.own_camera
-    if _holds_things_of_the_user(scene, ours):
+    """Remove one of our scenes and its camera. A scene that holds anything of the user's is handed over to the user
+    instead."""
+    camera_object = scene.afterlight.own_camera
+    if _holds_things_of_the_user(scene, camera_object):
         _hand_over(scene)
         return
-    data = ours.data if _is_our_camera(ours) else None
-    if data is not None and len(ours.users_collection) < 2:
-        bpy.data.objects.remove(ours)
+    data = camera_object.data if _is_our_camera(camera_object) else None
+    if data is not None and len(camera_object.users_collection) < 2:
+        bpy.data.objects.remove(camera_object)
         if data.get(MARK) == "camera" and not data.users:
             bpy.data.cameras.remove(data)
     bpy.data.scenes.remove(scene)
 
 
 def orphans():
-    """The scenes that were ours and whose lit scene has been deleted."""
+    """Our scenes whose lit scene was deleted."""
     return [
         scene
         for scene in bpy.data.scenes
@@ -100,7 +103,7 @@ def orphans():
 
 
 def adopt(lit):
-    """Take over the scenes of a file of 0.1.0 to 0.3.0, which marked them by a custom property, and their cameras."""
+    """Take over the scenes, and their cameras, of a file from 0.1.0 to 0.3.0, where a custom property marks them."""
     views = [each.scene for each in lit.afterlight.view_scenes]
     for scene, role in [(lit.afterlight.helper, HELPER), *zip(views, (SCOUT, *(VIEW,) * len(views)))]:
         if (
@@ -113,31 +116,39 @@ def adopt(lit):
             continue
         scene.afterlight.role, scene.afterlight.serves = role, lit
         del scene[MARK]
-        found = scene.camera
-        if found and found.type == "CAMERA" and list(scene.collection.all_objects) == [found] and found.data.users == 1:
-            found[MARK] = found.data[MARK] = "camera"
-            scene.afterlight.own_camera = found
+        camera_object = scene.camera
+        if (
+            camera_object
+            and camera_object.type == "CAMERA"
+            and list(scene.collection.all_objects) == [camera_object]
+            and camera_object.data.users == 1
+        ):
+            camera_object[MARK] = camera_object.data[MARK] = "camera"
+            scene.afterlight.own_camera = camera_object
 
 
 def _has_our_size(scene):
-    return scene.render.resolution_x == scene.render.resolution_y == SIDE
+    return scene.render.resolution_x == scene.render.resolution_y == FRAME_SIDE
 
 
-def _is_our_camera(thing):
-    return thing is not None and thing.type == "CAMERA" and thing.get(MARK) == "camera"
+def _is_our_camera(camera_object):
+    return camera_object is not None and camera_object.type == "CAMERA" and camera_object.get(MARK) == "camera"
 
 
-def _holds_things_of_the_user(scene, ours):
-    """Whether something would be lost with the scene."""
-    here = {scene.collection, *scene.collection.children_recursive}
-    others = [*bpy.data.collections, *(each.collection for each in bpy.data.scenes)]
-    elsewhere = {child for parent in others if parent not in here for child in parent.children_recursive}
+def _holds_things_of_the_user(scene, camera_object):
+    """Whether removing a scene would lose something of the user's."""
+    collections = {scene.collection, *scene.collection.children_recursive}
+    all_collections = [*bpy.data.collections, *(each.collection for each in bpy.data.scenes)]
+    elsewhere = {
+        child for parent in all_collections if parent not in collections for child in parent.children_recursive
+    }
     return bool(
-        here - elsewhere - {scene.collection}
+        collections - elsewhere - {scene.collection}
         or scene.compositing_node_group
         or scene.sequence_editor
         or any(
-            thing != ours and not (set(thing.users_collection) - here or elsewhere.intersection(thing.users_collection))
+            thing != camera_object
+            and not (set(thing.users_collection) - collections or elsewhere.intersection(thing.users_collection))
             for thing in scene.collection.all_objects
         )
     )
@@ -149,4 +160,4 @@ def _hand_over(scene):
     settings.role, settings.serves, settings.own_camera = "", None, None
     scene.render.engine = "BLENDER_EEVEE"
     scene.background_set = None
-    scene.name = scene.name.removeprefix(".")  # Blender's menus leave out names with a leading dot
+    scene.name = scene.name.removeprefix(".")  # Blender's menus hide names with a leading dot

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Our temporary files: they lie in a folder of our own, and only what we wrote is ever removed.
+"""Our temporary files. They lie in a folder of our own, and nothing but what we wrote is ever removed.
 
-Blender's folder alone would not do: where Blender can't make one it takes the folder of everybody's temporary files.
-Ours is made within, with a name that nobody can guess and no access for other users.
+Blender's session folder alone is not enough: if Blender can't make one it uses the system's shared temporary folder.
+Ours is made inside whichever it is, with an unguessable name and no access for other users.
 
-Beside our files each Blender holds a lock, which ends with its process however that ends: so the next start knows what
-a killed one left. Process numbers would not do: they are used again, containers have their own, and to ask after one on
-Windows is to kill it.
+Beside our files each Blender process holds a file lock, which ends with the process however that ends; so the next
+start can tell which folders a killed process left. Process numbers would not do: they are reused, containers have their
+own, and on Windows asking for one can kill the process.
 """
 
 import os
@@ -24,21 +24,21 @@ try:
 except ImportError:
     import msvcrt  # Windows
 
-PREFIX = "afterlight_"  # of our folders
-SESSION = "blender_"  # of the folders that Blender makes for its sessions
-FILE = re.compile(r"passes_\d+\.exr")  # the names of our files
-LOCK = ".lock"  # one in each of our folders
-LONGEST = 0.005  # seconds that looking may take: folders that are left then wait for another start
+FOLDER_PREFIX = "afterlight_"  # names of our folders begin with it
+SESSION_PREFIX = "blender_"  # names of Blender's session folders begin with it
+FILE_NAME = re.compile(r"passes_\d+\.exr")  # names of our files
+LOCK_NAME = ".lock"  # name of the lock file in each of our folders
+MAX_SEARCH_SECONDS = 0.005  # seconds for removing abandoned folders; the rest is left for another start
 
-# Whether folders are worked in by their descriptors, so that nobody can put others in their places meanwhile.
+# Whether files are addressed by a folder's descriptor, so that nobody can swap the folder in the meantime.
 BY_DESCRIPTOR = {os.open, os.stat, os.unlink, os.rmdir} <= os.supports_dir_fd and os.listdir in os.supports_fd
 
-_folders = []  # of _Own; the last is the one that is written to. Global, as they live until Blender ends
+_folders = []  # of _OwnFolder; the last one is written to. Global, as they live until Blender ends
 
 
 def new(number):
-    """The path to write the passes of the scene with this session_uid to; what stood there is removed. Raises OSError
-    where there is no place to write to."""
+    """The path for the passes of the scene with this session_uid; an old file there is removed. Raises OSError if no
+    folder can be written to."""
     path = os.path.join(_folder().path, f"passes_{number}.exr")
     with suppress(FileNotFoundError):
         os.unlink(path)
@@ -46,15 +46,15 @@ def new(number):
 
 
 def remove(path):
-    """Remove a file whose path new() gave; no error where it is gone."""
+    """Remove a file at a path from new(). Ignores missing files."""
     folder, name = os.path.split(path)
-    if FILE.fullmatch(name) and any(each.path == folder for each in _folders):
+    if FILE_NAME.fullmatch(name) and any(each.path == folder for each in _folders):
         with suppress(OSError):
             os.unlink(path)
 
 
-def check(path):
-    """Raises OSError where there is no regular file at `path`: to read a pipe would wait for ever."""
+def check_regular(path):
+    """Raise OSError if there is no regular file at `path`: reading a pipe would wait for ever."""
     if not _is_plain(os.lstat(path), stat.S_ISREG):
         raise OSError("it is no regular file")
 
@@ -65,38 +65,41 @@ def release():
         _folders.pop().remove()
 
 
-def leave():
-    """As release(), where the process ends without Blender's own clearing up: its folder goes too if it is empty."""
+def release_at_exit():
+    """Remove all our files and folders when the process ends without Blender's own cleanup, and Blender's session
+    folder too if it is empty."""
     release()
     session = os.path.normpath(bpy.app.tempdir)
-    if os.path.basename(session).startswith(SESSION):
+    if os.path.basename(session).startswith(SESSION_PREFIX):
         with suppress(OSError):
             os.rmdir(session)
 
 
 def clear():
-    """Remove what killed Blenders of this user left among the temporary files: never what belongs to one that runs."""
-    end = time.perf_counter() + LONGEST
+    """Remove folders that this user's killed Blender processes left among the temporary files, never those of a running
+    one."""
+    deadline = time.perf_counter() + MAX_SEARCH_SECONDS
     with suppress(OSError), _Folder(_base()) as base:
-        names = [name for name in base.names() if name.startswith((PREFIX, SESSION))]
-        first = random.randrange(len(names) + 1)  # so that every folder has its turn
+        names = [name for name in base.names() if name.startswith((FOLDER_PREFIX, SESSION_PREFIX))]
+        first = random.randrange(len(names) + 1)  # start anywhere, so that every folder gets its turn
         for name in names[first:] + names[:first]:
-            if time.perf_counter() > end:
+            if time.perf_counter() > deadline:
                 break
-            (_clear if name.startswith(PREFIX) else _clear_session)(base, name)
+            (_remove_abandoned if name.startswith(FOLDER_PREFIX) else _clean_session)(base, name)
 
 
 class _Folder:
-    """A folder to work in. Within another it is only opened where it is this user's, and no link. Raises OSError."""
+    """An open folder. Inside another folder it is opened only if it belongs to this user and is no link. Raises
+    OSError."""
 
     def __init__(self, path, within=None):
         if BY_DESCRIPTOR:
             flags = os.O_RDONLY | os.O_DIRECTORY | (os.O_NOFOLLOW if within else 0)
-            self._place = os.open(path, flags, dir_fd=within._place if within else None)
+            self._handle = os.open(path, flags, dir_fd=within._handle if within else None)
         else:
-            self._place = os.path.join(within._place, path) if within else path
-        found = self.state()
-        if within and not (_is_plain(found, stat.S_ISDIR) and _is_own(found)):
+            self._handle = os.path.join(within._handle, path) if within else path
+        status = self.status()
+        if within and not (_is_plain(status, stat.S_ISDIR) and _is_own(status)):
             self.close()
             raise PermissionError(f"{path} is another's, or a link")
 
@@ -108,51 +111,51 @@ class _Folder:
 
     def close(self):
         if BY_DESCRIPTOR:
-            os.close(self._place)
+            os.close(self._handle)
 
-    def state(self):
-        return os.fstat(self._place) if BY_DESCRIPTOR else os.lstat(self._place)
+    def status(self):
+        return os.fstat(self._handle) if BY_DESCRIPTOR else os.lstat(self._handle)
 
     def names(self):
-        return os.listdir(self._place)
+        return os.listdir(self._handle)
 
     def call(self, function, name, *arguments, **options):
-        """Call a function of `os` that takes a path for something in the folder."""
+        """Call a function of `os` that takes a path, for a name in this folder."""
         if BY_DESCRIPTOR:
-            return function(name, *arguments, dir_fd=self._place, **options)
-        return function(os.path.join(self._place, name), *arguments, **options)
+            return function(name, *arguments, dir_fd=self._handle, **options)
+        return function(os.path.join(self._handle, name), *arguments, **options)
 
     def is_file(self, name):
         return _is_plain(self.call(os.stat, name, follow_symlinks=False), stat.S_ISREG)
 
     def remove_files(self):
-        """Remove our files, and nothing else that may be there."""
+        """Remove our files, and nothing else."""
         for name in self.names():
-            if FILE.fullmatch(name) and self.is_file(name):
+            if FILE_NAME.fullmatch(name) and self.is_file(name):
                 self.call(os.unlink, name)
 
 
-class _Own:
-    """A folder of this process. path: its own. under: Blender's temporary folder at that time."""
+class _OwnFolder:
+    """The folder of this process. path: its own. under: Blender's temporary folder when it was made."""
 
     def __init__(self):
         self.under = bpy.app.tempdir
-        os.makedirs(self.under, mode=0o700, exist_ok=True)  # a cleaner of the system's may have removed it
-        self.path = tempfile.mkdtemp(prefix=PREFIX, dir=self.under)
-        self._made = os.lstat(self.path)
+        os.makedirs(self.under, mode=0o700, exist_ok=True)  # the system may have cleaned it away
+        self.path = tempfile.mkdtemp(prefix=FOLDER_PREFIX, dir=self.under)
+        self._status = os.lstat(self.path)
         self._lock = _new_lock(self.path)
 
-    def stands(self):
-        """Whether it is still there, and no other in its place."""
+    def exists(self):
+        """Whether it still exists and was not replaced by another."""
         try:
-            return os.path.samestat(os.lstat(self.path), self._made)
+            return os.path.samestat(os.lstat(self.path), self._status)
         except OSError:
             return False
 
     def is_current(self):
-        """Whether to write to it: Blender may have another folder by now, and somebody may have removed the lock."""
+        """Whether to write to it: Blender may use another folder by now, and the lock file may have been removed."""
         locked = self._lock is None or os.fstat(self._lock).st_nlink > 0
-        return self.under == bpy.app.tempdir and locked and self.stands()
+        return self.under == bpy.app.tempdir and locked and self.exists()
 
     def remove(self):
         if self._lock is not None:
@@ -160,62 +163,64 @@ class _Own:
         within, name = os.path.split(self.path)
         with suppress(OSError), _Folder(within) as within:
             with _Folder(name, within) as folder:
-                if not os.path.samestat(folder.state(), self._made):
+                if not os.path.samestat(folder.status(), self._status):
                     return
                 folder.remove_files()
                 with suppress(FileNotFoundError):
-                    folder.call(os.unlink, LOCK)
+                    folder.call(os.unlink, LOCK_NAME)
             within.call(os.rmdir, name)
 
 
 def _folder():
-    """The _Own to write to, made where there is none. Raises OSError."""
+    """The _OwnFolder to write to, made if necessary. Raises OSError."""
     if not _folders or not _folders[-1].is_current():
-        _folders[:] = [each for each in _folders if each.stands() or each.remove()]  # others hold files that are in use
-        _folders.append(_Own())
+        _folders[:] = [each for each in _folders if each.exists() or each.remove()]  # older ones may hold files in use
+        _folders.append(_OwnFolder())
     return _folders[-1]
 
 
 def _base():
-    """The folder of everybody's temporary files, in which Blender makes one for the session where it can."""
+    """The system's temporary folder, in which Blender makes its session folder if it can."""
     folder = os.path.normpath(bpy.app.tempdir)
-    return os.path.dirname(folder) if os.path.basename(folder).startswith(SESSION) else folder
+    return os.path.dirname(folder) if os.path.basename(folder).startswith(SESSION_PREFIX) else folder
 
 
-def _clear_session(base, name):
+def _clean_session(base, name):
     with suppress(OSError):
         with _Folder(name, base) as session:
-            cleared = [_clear(session, each) for each in session.names() if each.startswith(PREFIX)]
-        if any(cleared):
+            removed = [
+                _remove_abandoned(session, child) for child in session.names() if child.startswith(FOLDER_PREFIX)
+            ]
+        if any(removed):
             base.call(os.rmdir, name)
 
 
-def _clear(within, name):
-    """Remove a folder of ours where nobody holds its lock. Returns whether it is gone."""
+def _remove_abandoned(within, name):
+    """Remove one of our folders if nobody holds its lock. Returns whether it is gone."""
     try:
         with _Folder(name, within) as folder:
             lock = _open_lock(folder)
             try:
-                _take(lock)
+                _acquire(lock)
                 folder.remove_files()
             finally:
                 os.close(lock)
-            folder.call(os.unlink, LOCK)
+            folder.call(os.unlink, LOCK_NAME)
         within.call(os.rmdir, name)
         return True
-    except OSError:  # no lock, a lock that is held, another user's folder, or other files in it
+    except OSError:  # no lock file, a held lock, another user's folder, or other files in it
         return False
 
 
 def _new_lock(path):
-    """The descriptor of a new lock that is held, or None where the file system has no locks: nobody clears a folder
-    without the file."""
-    made = os.path.join(path, LOCK if os.name == "nt" else f"{LOCK}.new")
+    """The descriptor of a new lock file, locked; None if the file system has no locks. A folder without the file is
+    never cleared by others."""
+    made = os.path.join(path, LOCK_NAME if os.name == "nt" else f"{LOCK_NAME}.new")
     lock = os.open(made, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
     try:
-        _take(lock)
-        if os.name != "nt":  # which renames no open files
-            os.rename(made, os.path.join(path, LOCK))  # only now may others try it
+        _acquire(lock)
+        if os.name != "nt":  # Windows can't rename open files
+            os.rename(made, os.path.join(path, LOCK_NAME))  # only from here on can others try to lock it
         return lock
     except OSError:
         os.close(lock)
@@ -225,30 +230,30 @@ def _new_lock(path):
 
 
 def _open_lock(folder):
-    if not folder.is_file(LOCK):
+    if not folder.is_file(LOCK_NAME):
         raise OSError("it is no regular file")
-    lock = folder.call(os.open, LOCK, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
-    if not stat.S_ISREG(os.fstat(lock).st_mode):  # changed since
+    lock = folder.call(os.open, LOCK_NAME, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+    if not stat.S_ISREG(os.fstat(lock).st_mode):  # replaced in the meantime
         os.close(lock)
         raise OSError("it is no regular file")
     return lock
 
 
-def _take(lock):
-    """The lock of an open file, at once. Raises OSError where another holds it, in this process or elsewhere."""
+def _acquire(lock):
+    """Lock an open file without waiting. Raises OSError if it is locked already, by this process or another."""
     if os.name == "nt":
         msvcrt.locking(lock, msvcrt.LK_NBLCK, 1)
     else:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-def _is_plain(found, is_kind):
-    """Whether an os.stat_result is of a kind, and of no link of any sort that Windows has."""
-    return is_kind(found.st_mode) and not getattr(found, "st_file_attributes", 0) & stat.FILE_ATTRIBUTE_REPARSE_POINT
+def _is_plain(status, is_type):
+    """Whether an os.stat_result is of this file type and no kind of link that Windows has."""
+    return is_type(status.st_mode) and not getattr(status, "st_file_attributes", 0) & stat.FILE_ATTRIBUTE_REPARSE_POINT
 
 
-def _is_own(found):
-    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+def _is_own(status):
+    return not hasattr(os, "geteuid") or status.st_uid == os.geteuid()
 
 
 def register():

@@ -71,7 +71,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         self.shot = None
         if self.is_off or jobs.is_empty_render():
             return
-        scene = roles.source(depsgraph.scene)
+        scene = roles.lit_scene(depsgraph.scene)
         if scene is None:
             self._fail(
                 depsgraph.scene,
@@ -100,13 +100,13 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         if shot is None:
             return
         pictures = {}
-        with self.failures_of(shot.scene), main_thread.until(self.test_break):
+        with self.failures_of(shot.scene), main_thread.cancel_when(self.test_break):
             pictures = self._light(shot, depsgraph)
         start = time.perf_counter()
         self._hand_back(shot, pictures)
         shot.spent("hand back", time.perf_counter() - start)
-        report.timed(shot.scene, shot.frame.seconds)
-        report.took(shot.scene, shot.memory)
+        report.keep_stages(shot.scene, shot.frame.seconds)
+        report.keep_memory(shot.scene, shot.memory)
 
     def render_frame_finish(self):
         """All view layers of the frame have their light."""
@@ -144,7 +144,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         main = gather.View(
             lambda: passes.load(frame.path, shot.layer, window, shot.scene.frame_step),
             shot.camera,
-            lambda: roughness.shine(frame.path, shot.layer, window),
+            lambda: roughness.specular_passes(frame.path, shot.layer, window),
         )
         shot.memory = {
             "GPU memory": gather.gpu_bytes(
@@ -160,7 +160,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         options = {"progress": self._progress, "timings": timed, "broken": broken}
         scene, settings = shot.scene, shot.settings
         if isinstance(settings, gather.RadiositySettings):
-            world = world_light.light(depsgraph, shot.job.worlds) if scene.afterlight.use_world_shadow else None
+            world = world_light.read(depsgraph, shot.job.worlds) if scene.afterlight.use_world_shadow else None
             gloss, history = self._gloss(shot), None
             if shot.averages:
                 history = shot.job.histories.before(scene, shot.layer, settings)
@@ -211,7 +211,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         now = time.perf_counter()
         if stage != self.shown[0] or now > self.shown[1] + PROGRESS_INTERVAL:
             self.shown = stage, now
-            self.update_stats("Afterlight", f"{say(report.in_words(stage))}, {fraction:.0%}")
+            self.update_stats("Afterlight", f"{say(report.label(stage))}, {fraction:.0%}")
             self.update_progress(fraction)
         return self.test_break()
 

@@ -33,7 +33,7 @@ class SavedView:
 
     def shine(self):
         """As gather.View has it."""
-        return roughness.shine(self.path, self.layer, self.window)
+        return roughness.specular_passes(self.path, self.layer, self.window)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +91,12 @@ class RenderedFrame:
             helper.render.frame_map_old, helper.render.frame_map_new = render.frame_map_old, render.frame_map_new
             helper.camera = scene.camera
 
-        main_thread.surely(set_up)
+        main_thread.must_run(set_up)
         try:
             engine.frame_set(scene.frame_current, scene.frame_subframe)
             self.camera = seen()
         finally:
-            main_thread.surely(lambda: setattr(helper, "camera", own))
+            main_thread.must_run(lambda: setattr(helper, "camera", own))
         return self.camera
 
     def save(self, depsgraph, progress, warn):
@@ -110,7 +110,7 @@ class RenderedFrame:
         self.views = self._save_views(depsgraph, warn)
 
     def _save_views(self, depsgraph, warn):
-        found, rendered, reuse = [], view_scenes.posed(self.scene), self._job.reuse
+        found, rendered, reuse = [], view_scenes.rendered_views(self.scene), self._job.reuse
         for view in view_scenes.scenes(self.scene):
             if known := reuse.recalled(view):
                 found.append(known)
@@ -122,7 +122,7 @@ class RenderedFrame:
                     continue
                 camera = view_cameras.camera(view, depsgraph, self.scene)
                 found.append(SavedView(path, view.view_layers[0].name, cameras.window(self.scene)[0], camera))
-                reuse.remember(view, view_cameras.shown(view, self.scene), found[-1])
+                reuse.remember(view, view_cameras.view_state(view, self.scene), found[-1])
             self._job.hold_views(self.scene, self.path, found)
         reuse.end_frame(found)
         return tuple(found)

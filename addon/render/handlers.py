@@ -69,7 +69,7 @@ def before_render(scene, *_):
     render_lock.begin()
     job = jobs.begin(scene, relight.replayed(scene))
     if scene.afterlight.enabled:
-        main_thread.surely(lambda: _begin(job, scene))  # in a window Blender calls this in the render's thread
+        main_thread.must_run(lambda: _begin(job, scene))  # in a window Blender calls this in the render's thread
     events.call_last("render_init", render_lock.lock)  # scripts may still tick the box in handlers of theirs
 
 
@@ -84,7 +84,7 @@ def _begin(job, scene):
     for finding in checks.findings(scene):
         if finding.fatal:
             report.fail(scene, finding.text)
-        report.tell(f"Afterlight: {finding.text}")
+        report.print_line(f"Afterlight: {finding.text}")
     if report.message(scene):
         _mute(job, scene)
 
@@ -93,7 +93,7 @@ def _begin(job, scene):
 def after_render(*_):
     """Complete or cancelled."""
     job = jobs.end()
-    main_thread.surely(lambda: _end(job))
+    main_thread.must_run(lambda: _end(job))
     waited = render_lock.end()
     if waited:
         main_thread.later(lambda: main_thread.after_render(lambda: _catch_up(waited)))

@@ -22,7 +22,7 @@ class Job:
         self.scene, self.replayed = scene.session_uid, replayed
         self.histories = histories.Histories(scene.frame_current)
         self.reuse = view_reuse.ViewReuse(("views", id(self)))
-        self.worlds = {}  # world_light.light()'s: pictures may change until the next render
+        self.worlds = {}  # world_light.read()'s: pictures may change until the next render
         self.muted = []  # (tree, node) by their names: kept out of a render that can't be lit
         self.is_empty = False  # Blender renders nothing, for the sake of an image of the render (handlers.py)
         self._saved = {}  # (frame number, path of its passes), by the session_uid of a lit scene

@@ -45,7 +45,7 @@ def replayed(scene):
 def exchange(scene):
     """Let the next render of `scene` repeat its kept frame. restore() must follow."""
     _called[scene.session_uid] = False
-    freestyle.hold(scene)
+    freestyle.suspend_drawing(scene)
     scene.render.engine = engines.REPLAY
 
 
@@ -53,7 +53,7 @@ def exchange(scene):
 def restore(*_):
     """Give every scene its own engine again. A render that goes on keeps the one that it began with."""
     for scene in bpy.data.scenes:
-        freestyle.release(scene)
+        freestyle.resume_drawing(scene)
         if scene.render.engine == engines.REPLAY:
             scene.render.engine = engines.EEVEE
 
@@ -80,7 +80,7 @@ class AfterlightReplay(report.Reporter, bpy.types.RenderEngine):
         """Hand the passes of a view layer back, as EEVEE had made them."""
         scene, layer = depsgraph.scene, depsgraph.view_layer.name
         _called[scene.session_uid] = True
-        with self.failures_of(scene), main_thread.until(self.test_break):
+        with self.failures_of(scene), main_thread.cancel_when(self.test_break):
             found = frames.kept(scene)
             if found is None:
                 raise Problem("There are no passes of a render of this scene. Press F12 first")

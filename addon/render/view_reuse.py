@@ -17,8 +17,8 @@ class ViewReuse:
 
     def __init__(self, holder):
         self._holder = holder
-        self._moving = {}  # what animation.moving() gave, by the session_uid of the lit scene
-        self._rendered = {}  # (what view_cameras.shown() gave, SavedView) by the session_uid of the view
+        self._moving = {}  # what animation.find_motion() gave, by the session_uid of the lit scene
+        self._rendered = {}  # (what view_cameras.view_state() gave, SavedView) by the session_uid of the view
         self._again = {}  # of those, the SavedView that the frame at hand uses again
 
     def begin_frame(self):
@@ -50,7 +50,7 @@ class ViewReuse:
         frame_store.hold(self._holder, [saved.path for _, saved in self._rendered.values()])
 
     def _is_moving(self, scene, depsgraph):
-        """Asked once in a render: whatever changes within it is of a kind that moving() finds."""
+        """Asked once in a render: whatever changes within it is of a kind that find_motion() finds."""
         if scene.session_uid not in self._moving:
-            self._moving[scene.session_uid] = bool(animation.moving(scene, depsgraph))
+            self._moving[scene.session_uid] = bool(animation.find_motion(scene, depsgraph))
         return self._moving[scene.session_uid]

@@ -23,13 +23,14 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         """Pose the views, or leave them out. There is no picture."""
-        scene = roles.source(depsgraph.scene)
+        scene = roles.lit_scene(depsgraph.scene)
         if scene is None or not scene.afterlight.enabled:
             return
         job, start = jobs.current(scene), time.perf_counter()
         if not job.renders(scene):
             return
-        with self.failures_of(scene, self._warn), main_thread.until(self.test_break):  # the main view is lit without
+        # Without views the main view is still lit.
+        with self.failures_of(scene, self._warn), main_thread.cancel_when(self.test_break):
             job.reuse.begin_frame()
             main_thread.run(lambda: view_scenes.prepare(scene))
             # The views of a kept frame are used again; what keeps all light out, the engine of the light says.
@@ -47,12 +48,12 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
         geometry = ray_cast.Geometry(depsgraph)
         layer = cameras.first_layer(scene)
         frame = passes.load(job.passes_file(scene), layer.name, cameras.window(scene)[0])
-        picture, rng = main_view.Picture(scene, layer, frame, camera), np.random.default_rng(scene.afterlight.seed)
+        main, rng = main_view.MainView(scene, layer, frame, camera), np.random.default_rng(scene.afterlight.seed)
 
         def look(count):
-            return picture.paths(count, geometry, rng, scene.afterlight.bounces)
+            return main.trace_paths(count, geometry, rng, scene.afterlight.bounces)
 
-        paths, seen = look(placement.PATHS)
+        paths, seen = look(placement.SCORING_PATHS)
         if paths is None:
             if not by_hand:
                 self._warn(scene, say("No views were placed, because no surface adds light to what the camera sees"))
@@ -62,13 +63,13 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
         else:
             shares = self._choose(scene, depsgraph, paths, seen, geometry.cast, look, rng)
         main_thread.run(lambda: self._leave_out_still(job, scene, depsgraph))
-        report.covered(scene, shares, time.perf_counter() - start)
+        report.keep_coverage(scene, shares, time.perf_counter() - start)
 
     def _leave_out_still(self, job, scene, depsgraph):
         """Of the posed views, drop those that would see what they saw in the frame before."""
-        for view in view_scenes.posed(scene):
-            if job.reuse.recall(scene, depsgraph, view, view_cameras.shown(view, scene)):
-                view_scenes.drop(view)
+        for view in view_scenes.rendered_views(scene):
+            if job.reuse.recall(scene, depsgraph, view, view_cameras.view_state(view, scene)):
+                view_scenes.leave_out(view)
 
     def _pose_by_hand(self, scene, depsgraph):
         for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
@@ -81,19 +82,19 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
                 )
 
     def _score(self, scene, depsgraph, paths, seen, cast):
-        """What the user's own views see: the shares of light as report.covered() wants them. Useless views are left
-        out."""
-        shares = [paths.arrives(seen)]
+        """What the user's own views see: the shares of light as report.keep_coverage() wants them. Useless views are
+        left out."""
+        shares = [paths.arriving_share(seen)]
         for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
             if not view.view_layers[0].use:
                 continue
             camera = view_cameras.camera(view, depsgraph, scene)
             frame = cameras.window(scene)[0][2:]
-            row, _, depth = cameras.project(paths.places, frame, camera)
-            eye = camera.position
+            row, _, depth = cameras.project(paths.positions, frame, camera)
+            origins = camera.position
             if camera.orthographic:
-                eye = paths.places + np.outer(depth, camera.rotation[2])
-            saw = placement.visible(eye, paths, cast) & (row >= 0)
+                origins = paths.positions + np.outer(depth, camera.rotation[2])
+            saw = placement.visible(origins, paths, cast) & (row >= 0)
             if not saw.any():
                 self._warn(
                     scene,
@@ -103,31 +104,38 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
                         each.camera.name,
                     ),
                 )
-                main_thread.run(lambda view=view: view_scenes.drop(view))
+                main_thread.run(lambda view=view: view_scenes.leave_out(view))
                 continue
             seen = seen | saw
-            shares.append(paths.arrives(seen))
+            shares.append(paths.arriving_share(seen))
         return shares
 
     def _choose(self, scene, depsgraph, paths, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
-        half, most, known = view_cameras.HALF_FIELD, scene.afterlight.view_count, view_scenes.placed(scene)
-        old = known.poses if known else []
-        shares = placement.covered(paths, seen, cast, half, old)
+        half_field, count = view_cameras.HALF_FIELD, scene.afterlight.view_count
+        placed = view_scenes.stored_placement(scene)
+        old = placed.poses if placed else []
+        shares = placement.coverage(paths, seen, cast, half_field, old)
         sees_nothing_new = old and shares[-1] <= shares[0]
-        if known is None or len(old) > most or shares[-1] < known.coverage[-1] - placement.FALL or sees_nothing_new:
-            more, more_seen = look(placement.CHOOSING_PATHS)
-            poses = placement.place(more, more_seen, cast, half, most, rng, old) if more else []
-            shares = placement.covered(paths, seen, cast, half, poses)
-            known = placement.Placement(poses, shares, placement.CLEARANCE * paths.size)
-            main_thread.run(lambda: view_scenes.keep_placed(scene, known))
-            if not poses and shares[0] < 1 - placement.FALL:
+        if (
+            placed is None
+            or len(old) > count
+            or shares[-1] < placed.coverage[-1] - placement.MAX_COVERAGE_LOSS
+            or sees_nothing_new
+        ):
+            more, more_seen = look(placement.PLACEMENT_PATHS)
+            poses = placement.place(more, more_seen, cast, half_field, count, rng, old) if more else []
+            shares = placement.coverage(paths, seen, cast, half_field, poses)
+            placed = placement.Placement(poses, shares, placement.VIEW_CLEARANCE * paths.size)
+            main_thread.run(lambda: view_scenes.store_placement(scene, placed))
+            if not poses and shares[0] < 1 - placement.MAX_COVERAGE_LOSS:
                 self._warn(scene, say("No views were placed, because no free position shows more than the camera does"))
         far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * paths.size)
-        lens = view_cameras.wide_lens(scene, known.clearance / 4, far)
+        lens = view_cameras.wide_lens(scene, placed.clearance / 4, far)
         main_thread.run(
             lambda: [
-                view_cameras.pose(view, scene, pose, lens) for view, pose in zip(view_scenes.scenes(scene), known.poses)
+                view_cameras.pose(view, scene, pose, lens)
+                for view, pose in zip(view_scenes.scenes(scene), placed.poses)
             ]
         )
         return shares

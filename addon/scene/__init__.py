@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The user's scene in numbers: passes, cameras, materials, world."""
+"""The user's scene as numbers: passes, cameras, materials, world."""

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether anything but the camera moves in an animation.
 
-Blender does not say what a frame has changed: each engine evaluates the scene anew. So the file is asked what *could*
-change with time or with the main camera, and whatever is not known to hold still counts as moving. Only the main camera
-may move, and what nothing but cameras depends on: a camera's path through a building, a turntable that turns the
-camera.
+Blender does not report what changes between frames: each engine evaluates the scene anew. So this asks what *could*
+change with time or with the main camera, and whatever is not known to stay still counts as moving. Only the main camera
+may move, and things on which nothing but cameras depends: the path of a camera through a building, a turntable that
+carries the camera.
 """
 
 import bpy
 
-KINDS = {
+# Types of data-blocks, and modifiers below, that change only if they are animated.
+STILL_ID_TYPES = {
     "ACTION",
     "ARMATURE",
     "CAMERA",
@@ -34,7 +35,7 @@ KINDS = {
     "VOLUME",
     "WORLD",
 }
-MODIFIERS = {
+STILL_MODIFIERS = {
     "ARMATURE",
     "ARRAY",
     "BEVEL",
@@ -76,6 +77,7 @@ MODIFIERS = {
     "WELD",
     "WIREFRAME",
 }
+# Constraints and nodes that change with time although they are not animated.
 TIMED_CONSTRAINTS = {"CAMERA_SOLVER", "FOLLOW_TRACK", "OBJECT_SOLVER", "TRANSFORM_CACHE"}
 TIMED_NODES = {
     "GeometryNodeInputSceneTime",
@@ -83,7 +85,7 @@ TIMED_NODES = {
     "GeometryNodeSimulationInput",
     "GeometryNodeSimulationOutput",
 }
-# Scripts that Blender calls in the midst of an animation may do anything.
+# Scripts in these handlers are called during an animation and may change anything.
 HANDLERS = (
     "frame_change_pre",
     "frame_change_post",
@@ -95,10 +97,9 @@ HANDLERS = (
 )
 
 
-def moving(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
-    """The name of something that may look otherwise in another frame of `scene`; empty where there is nothing.
-
-    depsgraph: one in which all that is looked at is evaluated."""
+def find_motion(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
+    """The name of something that may look different in another frame of `scene`; empty if there is nothing. depsgraph:
+    one in which everything that is looked at is evaluated."""
     for name in HANDLERS:
         for handler in getattr(bpy.app.handlers, name):
             if not getattr(handler, "__module__", "").startswith(__package__.rpartition(".")[0]):
@@ -106,48 +107,48 @@ def moving(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
     if _is_animated(scene) or scene.rigidbody_world:
         return scene.name
     animated = set()
-    for each in depsgraph.ids:
-        if each.id_type not in KINDS or _is_timed(each):
-            return each.name
-        if _is_animated(each):
-            animated.add(each.original)
+    for datablock in depsgraph.ids:
+        if datablock.id_type not in STILL_ID_TYPES or _is_timed(datablock):
+            return datablock.name
+        if _is_animated(datablock):
+            animated.add(datablock.original)
     users = bpy.data.user_map() if animated else {}
-    return next((each.name for each in animated if not _moves_cameras_only(each, users)), "")
+    return next((datablock.name for datablock in animated if not _moves_cameras_only(datablock, users)), "")
 
 
-def _is_animated(thing):
-    data = getattr(thing, "animation_data", None)
-    if data is None or getattr(thing, "type", "") == "COMPOSITING":
+def _is_animated(datablock):
+    data = getattr(datablock, "animation_data", None)
+    if data is None or getattr(datablock, "type", "") == "COMPOSITING":
         return False
     return bool(data.action or data.drivers or data.nla_tracks)
 
 
-def _is_timed(thing):
-    """Whether an ID changes with time, or with the camera, of itself."""
-    if thing.id_type == "OBJECT":
+def _is_timed(datablock):
+    """Whether a data-block changes with time, or with the camera, without being animated."""
+    if datablock.id_type == "OBJECT":
         return (
-            any(each.type not in MODIFIERS for each in thing.modifiers)
-            or any(each.type in TIMED_CONSTRAINTS for each in thing.constraints)
-            and thing.type != "CAMERA"
-            or thing.rigid_body is not None
-            or thing.soft_body is not None
+            any(each.type not in STILL_MODIFIERS for each in datablock.modifiers)
+            or any(each.type in TIMED_CONSTRAINTS for each in datablock.constraints)
+            and datablock.type != "CAMERA"
+            or datablock.rigid_body is not None
+            or datablock.soft_body is not None
         )
-    if thing.id_type == "IMAGE":
-        return thing.source in {"MOVIE", "SEQUENCE"}
-    if thing.id_type == "VOLUME":
-        return thing.is_sequence
-    if thing.id_type == "NODETREE":
-        return any(node.bl_idname in TIMED_NODES for node in thing.nodes)
+    if datablock.id_type == "IMAGE":
+        return datablock.source in {"MOVIE", "SEQUENCE"}
+    if datablock.id_type == "VOLUME":
+        return datablock.is_sequence
+    if datablock.id_type == "NODETREE":
+        return any(node.bl_idname in TIMED_NODES for node in datablock.nodes)
     return False
 
 
-def _moves_cameras_only(thing, users, known=()):
-    """Whether only cameras depend on an ID: it is one, or an empty that nothing else follows."""
-    if thing in known:
+def _moves_cameras_only(datablock, users, seen=()):
+    """Whether only cameras depend on a data-block: it is a camera, or an empty that nothing else follows."""
+    if datablock in seen:
         return True
-    if thing.id_type == "OBJECT":
-        if thing.type not in {"CAMERA", "EMPTY"} or thing.instance_type != "NONE":
+    if datablock.id_type == "OBJECT":
+        if datablock.type not in {"CAMERA", "EMPTY"} or datablock.instance_type != "NONE":
             return False
-    elif thing.id_type not in {"CAMERA", "ACTION"}:
-        return thing.id_type in {"SCENE", "COLLECTION", "SCREEN", "WINDOWMANAGER", "WORKSPACE"} and bool(known)
-    return all(_moves_cameras_only(each, users, (*known, thing)) for each in users.get(thing, ()))
+    elif datablock.id_type not in {"CAMERA", "ACTION"}:
+        return datablock.id_type in {"SCENE", "COLLECTION", "SCREEN", "WINDOWMANAGER", "WORKSPACE"} and bool(seen)
+    return all(_moves_cameras_only(each, users, (*seen, datablock)) for each in users.get(datablock, ()))

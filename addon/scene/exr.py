@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files in which finished passes lie (frame_store.py): read as arrays in the file's own memory."""
+"""Reading the pass files that frame_store.py writes, as arrays mapped from the file."""
 
 import mmap
 from collections.abc import Callable, Iterable
@@ -11,11 +11,12 @@ from ..host.report import Problem
 
 
 def read(path: str, window: tuple[int, int, int, int]) -> Callable[[str], np.ndarray]:
-    """A function from the name of a channel ("ViewLayer.Normal.X") of a file that frame_store.save() wrote to its (H,
-    W) float32, rows top first, or KeyError. window, Problem: as load() has them."""
+    """A function from the name of a channel ("ViewLayer.Normal.X") to its pixels, (H, W) float32, top row first; it
+    raises KeyError if there is no such channel. path: a file that frame_store.save() wrote. window: (x, y, width,
+    height) in pixels from the bottom left, the part to cut out. Raises Problem if the file can't be read."""
     channels = _channels(path)
 
-    def cut(name):
+    def read_channel(name):
         pixels = channels[name]
         x, y, width, height = window
         if pixels.shape != (height, width):
@@ -23,34 +24,37 @@ def read(path: str, window: tuple[int, int, int, int]) -> Callable[[str], np.nda
             pixels = pixels[top : top + height, x : x + width]
         return np.asarray(pixels, np.float32)
 
-    return cut
+    return read_channel
 
 
-def triple(cut: Callable[[str], np.ndarray], name: str, axes: str = "RGB") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Three channels of a pass ("ViewLayer.Normal"), cut() as read() gives it."""
-    first, second, third = (cut(f"{name}.{axis}") for axis in axes)
+def triple(
+    read_channel: Callable[[str], np.ndarray], name: str, axes: str = "RGB"
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Three channels of a pass ("ViewLayer.Normal"). read_channel: a function from read()."""
+    first, second, third = (read_channel(f"{name}.{axis}") for axis in axes)
     return first, second, third
 
 
 def contents(path: str, layers: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
     """{view layer: [(pass, its channels in Blender's order)]} of a file that frame_store.save() wrote."""
-    found: dict[str, dict[str, list[str]]] = {}
+    channels_of: dict[str, dict[str, list[str]]] = {}
     for name in _channels(path):
-        of, kind, channel = ("", *name.rsplit(".", 2))[-3:]  # names of passes have no dots: Blender replaces them
-        if of in layers:  # the file holds the compositor's picture as well
-            found.setdefault(of, {}).setdefault(kind, []).append(channel)
+        # Names of passes contain no dots: Blender replaces them.
+        layer_name, pass_name, channel = ("", *name.rsplit(".", 2))[-3:]
+        if layer_name in layers:  # the file also holds the compositor's output
+            channels_of.setdefault(layer_name, {}).setdefault(pass_name, []).append(channel)
     order = "RGBXYZWUVA"
     return {
         layer: [
-            (kind, "".join(sorted(channels, key=lambda channel: order.find(channel.upper()))))
-            for kind, channels in of.items()
+            (pass_name, "".join(sorted(channels, key=lambda channel: order.find(channel.upper()))))
+            for pass_name, channels in passes.items()
         ]
-        for layer, of in found.items()
+        for layer, passes in channels_of.items()
     }
 
 
 def _channels(path):
-    """{channel: (height, width) float32, rows top first} of a file that frame_store.save() wrote. Raises Problem."""
+    """{channel: (height, width) float32, top row first} of a file that frame_store.save() wrote. Raises Problem."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -60,12 +64,12 @@ def _channels(path):
             one_line(error),
         ) from error
     try:
-        temp_files.check(path)
+        temp_files.check_regular(path)
         channels = _mapped(path, OpenEXR.File(path, separate_channels=True, header_only=True).header())
         if channels is None:
             parts = OpenEXR.File(path, separate_channels=True).parts
             channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
-        if not channels:  # OpenEXR only prints why
+        if not channels:  # OpenEXR only prints the reason
             raise EOFError("it holds no whole pass")
         return channels
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
@@ -78,34 +82,32 @@ def _channels(path):
 
 
 def _mapped(path, header):
-    """{channel: (H, W) float32, rows top first} in the file's own memory, or None where it is not laid out as save()
-    asks for it: OpenEXR must then read it, or say what is wrong with it.
+    """{channel: (H, W) float32, top row first} mapped from the file; None if its layout is not the one that save() asks
+    for, so that OpenEXR must read it or say what is wrong with it.
 
-    OpenEXR's reader copies every pass of every layer; here only what is used is touched, and copied once, on its way to
-    the GPU. In a file of one part without compression each row is its number, its size in bytes, and its channels.
-    """
+    OpenEXR's reader copies every pass of every layer. Here only the passes that are used are touched, and copied once,
+    on their way to the GPU. In an uncompressed file of one part each row is its number, its size in bytes, and its
+    channels."""
     channels = header["channels"]
     (left, top), (right, bottom) = header["dataWindow"]
     width, height = int(right - left + 1), int(bottom - top + 1)
-    line = 8 + 4 * width * len(channels)
+    bytes_per_row = 8 + 4 * width * len(channels)
     with open(path, "rb") as file:
-        pages = mmap.mmap(
-            file.fileno(), 0, access=mmap.ACCESS_COPY
-        )  # what is written to the arrays stays out of the file
+        pages = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_COPY)  # writes to the arrays don't reach the file
     data = np.frombuffer(pages, np.uint8)
-    start = data.size - height * line
+    start = data.size - height * bytes_per_row
     if start <= 0:
         return None
-    lines = data[start:].reshape(height, line)
-    numbers, sizes = lines[:, :8].copy().view("<i4").T
-    if not np.array_equal(numbers, np.arange(top, bottom + 1)) or np.any(sizes != line - 8):
+    rows = data[start:].reshape(height, bytes_per_row)
+    numbers, sizes = rows[:, :8].copy().view("<i4").T
+    if not np.array_equal(numbers, np.arange(top, bottom + 1)) or np.any(sizes != bytes_per_row - 8):
         return None
-    if hasattr(mmap, "MADV_DONTNEED"):  # for a row's number the system has mapped what is around it as well
+    if hasattr(mmap, "MADV_DONTNEED"):  # reading the row numbers has paged in the rows around them
         pages.madvise(mmap.MADV_DONTNEED)
-    planes = lines[:, 8:].view("<f4").reshape(height, len(channels), width)
+    planes = rows[:, 8:].view("<f4").reshape(height, len(channels), width)
     return {channel.name: planes[:, index] for index, channel in enumerate(channels)}
 
 
 def one_line(error: BaseException) -> str:
-    """The text of an error without its line breaks."""
+    """The text of an error without line breaks."""
     return " ".join(str(error).split())

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The owner of all pass files: each has holders, and is removed as soon as nobody holds it.
 
-    holder                held from ... to
-    a render job          the first save of a frame - its end, when the frame is kept or dropped (render/job.py)
-    a kept frame          the end of a frame - the next render of its scene, another file, or the user
-    (render/frames.py) views that hold still the frame that renders one - the last of the job that can use it again
-    (render/view_reuse.py)
+    holder                                        held from ... to
+    a render job (render/job.py)                  the first save of a frame ... its end, when it is kept or dropped
+    a kept frame (render/frames.py)               the end of a frame ... the next render of its scene, another file,
+                                                  or removal by the user
+    views of a still scene (render/view_reuse.py) the frame that renders one ... the last of the job that can reuse it
 
 A scene's passes always go into the same file, so that its next frame takes no more room than this one.
 """
@@ -25,14 +25,14 @@ _holders: dict[str, set[Hashable]] = {}  # {path: holders}; global, since frames
 def save(scene: bpy.types.Scene) -> str:
     """Write the finished passes of `scene` to a file in our temporary folder and return its path.
 
-    Blender hands the pixels of a render to Python in no other way: a multilayer EXR, uncompressed, takes a tenth of
-    a second at 1280 x 720. Raises Problem where it can't be written, gather.Cancelled where the render is to stop.
-    """
+    This is the only way to get the pixels of a render out of Blender in Python; an uncompressed multilayer EXR takes
+    a tenth of a second at 1280 x 720. Raises Problem if it can't be written, gather.Cancelled if the render is to
+    stop."""
     try:
         path = temp_files.new(scene.session_uid)
     except OSError as error:
         raise _not_written(one_line(error)) from error
-    # Blender takes the format from the scene whose passes it writes, and lets no copy be given.
+    # Blender takes the file format from the scene itself; no copy of its settings can be passed.
     settings = main_thread.run(lambda: _to_multilayer_exr(scene.render))
     try:
         if (image := render_result()) is None:
@@ -47,14 +47,14 @@ def save(scene: bpy.types.Scene) -> str:
             ) from error
         raise _not_written(one_line(error)) from error
     finally:
-        main_thread.surely(lambda: put_back.restore(settings))
+        main_thread.must_run(lambda: put_back.restore(settings))
     if not os.path.exists(path):
         raise _not_written("there is no file")
     return path
 
 
 def hold(holder: Hashable, paths: Collection[str]) -> None:
-    """Let `holder` (anything hashable) need these files, and no others any more. Files that nobody needs go."""
+    """Make `holder` (anything hashable) hold exactly these files. Files that nobody holds any more are removed."""
     for path in paths:
         _holders.setdefault(path, set()).add(holder)
     for path in [path for path, holders in _holders.items() if holder in holders and path not in paths]:
@@ -64,18 +64,18 @@ def hold(holder: Hashable, paths: Collection[str]) -> None:
 
 
 def release(holder: Hashable) -> None:
-    """`holder` needs no file any more."""
+    """Make `holder` hold no file any more."""
     hold(holder, ())
 
 
 def discard(path: str) -> None:
-    """Remove a file that save() wrote, whoever holds it; no error where it is gone."""
+    """Remove a file that save() wrote, whoever holds it. Ignores missing files."""
     _holders.pop(path, None)
     temp_files.remove(path)
 
 
 def size(path: str) -> int:
-    """Bytes of a file that save() wrote, 0 where it is gone."""
+    """Bytes of a file that save() wrote, 0 if it is gone."""
     try:
         return os.path.getsize(path)
     except OSError:
@@ -83,14 +83,14 @@ def size(path: str) -> int:
 
 
 def render_result() -> bpy.types.Image | None:
-    """Blender's image that stands for finished renders, or None: `blender -b` has none before its first frame."""
+    """Blender's image of the finished render, or None: `blender -b` has none before its first frame."""
     return next((image for image in bpy.data.images if image.type == "RENDER_RESULT"), None)
 
 
 def _to_multilayer_exr(render):
-    """Image settings for save(). Returns the user's own, for put_back.restore()."""
+    """Set the image settings that save() needs. Returns the user's own, for put_back.restore()."""
     image_settings = render.image_settings
-    # Only what is in use: to read a name that was never chosen makes Blender print a warning.
+    # Only settings in use: reading a colour space that was never set makes Blender print a warning.
     linear = image_settings.has_linear_colorspace or image_settings.color_management == "OVERRIDE"
     video = render.ffmpeg if image_settings.media_type == "VIDEO" else None
     saved = put_back.record(image_settings, video, leave=() if linear else ("linear_colorspace_settings",))
@@ -100,7 +100,7 @@ def _to_multilayer_exr(render):
         image_settings.color_depth = "32"
         image_settings.exr_codec = "NONE"
         image_settings.use_exr_interleave = (
-            True  # half the time to write of one part a pass (docs/blender/rendering.md)
+            True  # writes in half the time of one part for each pass (docs/blender/rendering.md)
         )
         image_settings.use_preview = False
     except BaseException:

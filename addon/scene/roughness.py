@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How rough the surfaces of a picture are, which EEVEE has no pass for.
+"""The roughness of surfaces at each pixel, for which EEVEE has no pass.
 
-Where the view layer has a value AOV of this name, that is taken: the user's materials say it themselves. Elsewhere the
-Cryptomatte pass tells each pixel's material, and its nodes its roughness (materials.py).
+If the view layer has a value AOV named "Roughness" that is used: the materials write it themselves. Otherwise the
+Cryptomatte pass gives each pixel's material, and its nodes the roughness (materials.py).
 """
 
 from dataclasses import replace
@@ -15,14 +15,14 @@ from ..host import main_thread
 from . import exr, materials, passes
 
 AOV = "Roughness"
-UNKNOWN = 0.5  # where nodes decide it that are not read, and of surfaces without a material: Blender's own default
-# Beside passes.PASSES: the view layer's switch, and the pass.
+UNKNOWN_ROUGHNESS = 0.5  # of materials that can't be read, and of surfaces without one: Blender's default
+# (switch, pass) besides passes.PASSES. switch: a property of the view layer.
 COLOR, DIRECT = ("use_pass_glossy_color", "Glossy Color"), ("use_pass_glossy_direct", "Glossy Direct")
 MATERIAL = "use_pass_cryptomatte_material", "CryptoMaterial00"
 
 
 def needed(layer: bpy.types.ViewLayer) -> tuple[tuple[str, str], ...]:
-    """(switch, pass) of what load() reads of a view layer."""
+    """(switch, pass) of each pass of a view layer that load() reads."""
     return (COLOR, DIRECT) if has_aov(layer) else (COLOR, DIRECT, MATERIAL)
 
 
@@ -32,47 +32,51 @@ def has_aov(layer: bpy.types.ViewLayer) -> bool:
 
 
 def load(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Gloss | None:
-    """gather.Gloss of a view layer from a file that frame_store.save() wrote, and None where it lacks a pass. path,
-    layer, window, Problem: as passes.load() has them."""
-    cut = exr.read(path, window)
+    """gather.Gloss of a view layer from a file that frame_store.save() wrote; None if it lacks a pass. window: (x, y,
+    width, height) in pixels from the bottom left. Raises Problem if the file can't be read."""
+    read_channel = exr.read(path, window)
     try:
-        color = exr.triple(cut, f"{layer}.{COLOR[1]}")
+        color = exr.triple(read_channel, f"{layer}.{COLOR[1]}")
         try:
-            rough = cut(f"{layer}.{AOV}.X")
+            rough = read_channel(f"{layer}.{AOV}.X")
         except KeyError:
-            rough = of_materials(cut(f"{layer}.{MATERIAL[1]}.r"))
+            rough = from_cryptomatte(read_channel(f"{layer}.{MATERIAL[1]}.r"))
     except KeyError:
         return None
     return gather.Gloss(color, rough)
 
 
-def shine(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Passes | None:
-    """gather.Passes of a view layer as gather.View.load_specular() gives them, and None where the file lacks a pass."""
-    cut, found = exr.read(path, window), passes.load(path, layer, window)
+def specular_passes(path: str, layer: str, window: tuple[int, int, int, int]) -> gather.Passes | None:
+    """gather.Passes with specular in place of diffuse color and light, for gather.View.load_specular(); None if the
+    file lacks a pass."""
+    read_channel, frame_passes = exr.read(path, window), passes.load(path, layer, window)
     try:
-        color, direct = (exr.triple(cut, f"{layer}.{name}") for _, name in (COLOR, DIRECT))
+        color, direct = (exr.triple(read_channel, f"{layer}.{name}") for _, name in (COLOR, DIRECT))
     except KeyError:
         return None
-    return replace(found, diffuse_color=color, diffuse_direct=direct, emission=(np.zeros_like(found.depth),) * 3)
+    return replace(
+        frame_passes, diffuse_color=color, diffuse_direct=direct, emission=(np.zeros_like(frame_passes.depth),) * 3
+    )
 
 
-def of_materials(numbers: np.ndarray) -> np.ndarray:
-    """(H, W) float32 of the numbers by which Cryptomatte calls materials."""
-    found, at = np.unique(np.ascontiguousarray(numbers).view(np.uint32), return_inverse=True)
-    wanted = set(found.tolist())
-    known = main_thread.run(
+def from_cryptomatte(id_pixels: np.ndarray) -> np.ndarray:
+    """(H, W) float32 roughness of Cryptomatte's material ids, (H, W) float32."""
+    unique, inverse = np.unique(np.ascontiguousarray(id_pixels).view(np.uint32), return_inverse=True)
+    ids = set(unique.tolist())
+    roughness_of = main_thread.run(
         lambda: {
-            number: materials.roughness(material, UNKNOWN)
+            number: materials.roughness(material, UNKNOWN_ROUGHNESS)
             for material in bpy.data.materials
-            if (number := cryptomatte(material.name)) in wanted
+            if (number := cryptomatte_id(material.name)) in ids
         }
     )
-    return np.array([known.get(number, UNKNOWN) for number in found.tolist()], np.float32)[at].reshape(numbers.shape)
+    values = np.array([roughness_of.get(number, UNKNOWN_ROUGHNESS) for number in unique.tolist()], np.float32)
+    return values[inverse].reshape(id_pixels.shape)
 
 
-def cryptomatte(name: str) -> int:
-    """The bits of the number by which Cryptomatte calls a thing of this name: MurmurHash3 (A. Appleby; 32 bits, seed
-    0), made a float that is finite and not denormal (Cryptomatte specification 1.2.0, ID generation)."""
+def cryptomatte_id(name: str) -> int:
+    """The bits of Cryptomatte's id for this name: MurmurHash3 (A. Appleby; 32 bits, seed 0), made a finite float that
+    is not denormal (Cryptomatte specification 1.2.0, ID generation)."""
 
     def turned(word, by):
         return (word << by | word >> (32 - by)) & 0xFFFFFFFF
@@ -81,12 +85,12 @@ def cryptomatte(name: str) -> int:
         return turned(word * 0xCC9E2D51 & 0xFFFFFFFF, 15) * 0x1B873593 & 0xFFFFFFFF
 
     data = name.encode()
-    whole, found = len(data) & ~3, 0
-    for first in range(0, whole, 4):
-        found = (
-            turned(found ^ mixed(int.from_bytes(data[first : first + 4], "little")), 13) * 5 + 0xE6546B64
+    whole_bytes, hashed = len(data) & ~3, 0
+    for first in range(0, whole_bytes, 4):
+        hashed = (
+            turned(hashed ^ mixed(int.from_bytes(data[first : first + 4], "little")), 13) * 5 + 0xE6546B64
         ) & 0xFFFFFFFF
-    found ^= mixed(int.from_bytes(data[whole:], "little")) ^ len(data)
+    hashed ^= mixed(int.from_bytes(data[whole_bytes:], "little")) ^ len(data)
     for shift, factor in ((16, 0x85EBCA6B), (13, 0xC2B2AE35), (16, 1)):
-        found = (found ^ found >> shift) * factor & 0xFFFFFFFF
-    return found ^ 1 << 23 if found >> 23 & 0xFF in (0, 0xFF) else found
+        hashed = (hashed ^ hashed >> shift) * factor & 0xFFFFFFFF
+    return hashed ^ 1 << 23 if hashed >> 23 & 0xFF in (0, 0xFF) else hashed

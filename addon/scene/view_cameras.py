@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the camera of a view sees, and how it is set so that Blender renders just that. A view is a scene of
-view_scenes.py."""
+"""The cameras of views: the lens of each, and how its camera object must be set so that Blender renders just that. The
+view scenes are those of compositor/view_scenes.py."""
 
 from dataclasses import dataclass
 from math import radians
@@ -13,14 +13,15 @@ from .. import gather
 from ..host.assign import assign
 from . import cameras, pixel_jitter
 
-FIELD = radians(120)  # of an automatic view, across and up: its pixels are no squares, whatever the frame's sides
-HALF_FIELD = np.tan(FIELD / 2) * np.ones(2)  # tangents of half of it
+FIELD = radians(120)  # of an automatic view, horizontally and vertically: its pixels are not square if the frame isn't
+HALF_FIELD = np.tan(FIELD / 2) * np.ones(2)  # tangents of half the field of view
 
 
 @dataclass(frozen=True)
 class Lens:
-    """What a view sees. pixel: (across, up) size of one, at depth 1 (perspective) or in metres (orthographic). centre:
-    (x, y), where the optical axis meets the view, in pixels from the view's middle. near, far: metres."""
+    """The projection of a view. pixel: (width, height) of a pixel, at depth 1 (perspective) or in metres
+    (orthographic). centre: (x, y), where the optical axis meets the image, in pixels from its middle. near, far: clip
+    start and end, metres."""
 
     pixel: tuple
     near: float
@@ -29,15 +30,23 @@ class Lens:
     orthographic: bool = False
 
 
-def lens_of(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> Lens:
-    """Lens of an evaluated camera of the user's, as if the view were its whole frame, and that as high as it is wide:
-    the side that is shorter sees as far as the other."""
+def lens_of(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> Lens:
+    """Lens of an evaluated camera of the user's for a view in the rendered part of the frame: a square field of view,
+    so that the image's shorter side sees as far as the longer one."""
     *_, width, height = cameras.window(scene)[0]
     size = np.array((width, height))
-    seen = cameras.camera_at(source.matrix_world, source, depsgraph, (0, 0), (width, height), (1.0, 1.0))
-    pixel = (seen.scale * size).max() / size
-    axis = -(seen.offset + seen.scale * size / 2) / pixel
-    return Lens(tuple(pixel), source.data.clip_start, source.data.clip_end, tuple(axis), seen.orthographic)
+    gather_camera = cameras.camera_at(
+        camera_object.matrix_world, camera_object, depsgraph, (0, 0), (width, height), (1.0, 1.0)
+    )
+    pixel = (gather_camera.scale * size).max() / size
+    axis = -(gather_camera.offset + gather_camera.scale * size / 2) / pixel
+    return Lens(
+        tuple(pixel),
+        camera_object.data.clip_start,
+        camera_object.data.clip_end,
+        tuple(axis),
+        gather_camera.orthographic,
+    )
 
 
 def wide_lens(scene: bpy.types.Scene, near: float, far: float) -> Lens:
@@ -46,15 +55,15 @@ def wide_lens(scene: bpy.types.Scene, near: float, far: float) -> Lens:
 
 
 def pose(view: bpy.types.Scene, scene: bpy.types.Scene, matrix, lens: Lens) -> None:
-    """Let a view scene be rendered in this frame of `scene`, from `matrix` (4 x 4, world).
+    """Make a view scene render in this frame of `scene`, from `matrix` (4 x 4, world).
 
-    Blender renders it at the scene's resolution and, where that has one, within its render border. The camera is made
-    so that this border holds the whole view."""
+    Blender renders it at the scene's resolution and, if there is one, within its render border. The camera is set so
+    that this border holds the whole view."""
     camera, data = view.camera, view.camera.data
-    place, rotation, _ = Matrix(matrix).decompose()
+    location, rotation, _ = Matrix(matrix).decompose()
     (x, y, width, height), full = cameras.window(scene)
     across, up = lens.pixel
-    # Blender measures a frame in the width of its pixels, and fits its longer side to the sensor.
+    # Blender measures a frame in widths of its pixels, and fits its longer side to the sensor.
     stretch = up / across
     longer = max(full[0], stretch * full[1])
     values = {
@@ -70,7 +79,7 @@ def pose(view: bpy.types.Scene, scene: bpy.types.Scene, matrix, lens: Lens) -> N
     }
     for name, value in values.items():
         assign(data, name, value)
-    for name, value in (("rotation_mode", "QUATERNION"), ("location", place), ("rotation_quaternion", rotation)):
+    for name, value in (("rotation_mode", "QUATERNION"), ("location", location), ("rotation_quaternion", rotation)):
         assign(camera, name, value)
     for name, value in (
         ("pixel_aspect_x", max(1 / stretch, 1.0)),
@@ -83,23 +92,23 @@ def pose(view: bpy.types.Scene, scene: bpy.types.Scene, matrix, lens: Lens) -> N
 
 
 def window_matrix(lens: Lens, scene: bpy.types.Scene) -> np.ndarray:
-    """(4, 4) float64: the projection of a lens of `scene`."""
+    """(4, 4) float64: the projection matrix of a lens in `scene`."""
     size, pixel = np.array(cameras.window(scene)[0][2:], float), np.array(lens.pixel)
     low, high = ((side * size / 2 - lens.centre) * pixel for side in (-1, 1))
     near, far = lens.near, lens.far
-    found = np.zeros((4, 4))
-    found[(0, 1), (0, 1)] = 2 / (high - low)
+    projection = np.zeros((4, 4))
+    projection[(0, 1), (0, 1)] = 2 / (high - low)
     if lens.orthographic:
-        found[:2, 3] = -(high + low) / (high - low)
-        found[2, 2:], found[3, 3] = (-2 / (far - near), -(far + near) / (far - near)), 1
+        projection[:2, 3] = -(high + low) / (high - low)
+        projection[2, 2:], projection[3, 3] = (-2 / (far - near), -(far + near) / (far - near)), 1
     else:
-        found[:2, 2] = (high + low) / (high - low)
-        found[2, 2:], found[3, 2] = (-(far + near) / (far - near), -2 * far * near / (far - near)), -1
-    return found
+        projection[:2, 2] = (high + low) / (high - low)
+        projection[2, 2:], projection[3, 2] = (-(far + near) / (far - near), -2 * far * near / (far - near)), -1
+    return projection
 
 
-def shown(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
-    """All that decides what a view sees of a still scene."""
+def view_state(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
+    """Everything that decides what a view sees of a scene that doesn't change."""
     camera, data = view.camera, view.camera.data
     return (
         cameras.window(scene),
@@ -115,12 +124,18 @@ def shown(view: bpy.types.Scene, scene: bpy.types.Scene) -> tuple:
 
 
 def camera(view: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scene: bpy.types.Scene) -> gather.Camera:
-    """gather.Camera of a view that is rendered together with `scene`. Its pose is what pose() set: nothing animates
-    it, so that no depsgraph need have heard of it."""
-    place = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
+    """gather.Camera of a view that is rendered together with `scene`. Its pose is the one that pose() set: nothing
+    animates it, so the depsgraph need not have evaluated it."""
+    matrix = Matrix.LocRotScale(view.camera.location, view.camera.rotation_quaternion, None)
     (x, y, _, _), full = cameras.window(scene)
     return cameras.camera_at(
-        place, view.camera, depsgraph, (x, y), full, _aspect(view), pixel_jitter.middle(view, view.view_layers[0])
+        matrix,
+        view.camera,
+        depsgraph,
+        (x, y),
+        full,
+        _aspect(view),
+        pixel_jitter.depth_sample_offset(view, view.view_layers[0]),
     )
 
 

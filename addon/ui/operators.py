@@ -9,7 +9,7 @@ from bl_operators.presets import AddPresetBase
 from bpy.props import EnumProperty, StringProperty
 from bpy.types import Operator
 
-from ..compositor import setup
+from ..compositor import faults, setup
 from ..diagnosis.fixes import FIXES
 from ..host import put_back
 from ..parameters import PARAMETERS
@@ -67,7 +67,7 @@ class AFTERLIGHT_OT_repair(OnEditableScene, Operator):
 
     def execute(self, context):
         setup.connect(context.scene)
-        for fault in setup.faults(context.scene):
+        for fault in faults.find(context.scene):
             self.report({"WARNING"}, fault)
         return {"FINISHED"}
 

@@ -129,13 +129,13 @@ class AFTERLIGHT_PT_last_render(InRenderProperties, Panel):
         if stages:
             column = layout.column(align=True)
             for stage, seconds in stages.items():
-                draw_value(column, say(report.in_words(stage)), f"{seconds:.3f} s")
+                draw_value(column, say(report.label(stage)), f"{seconds:.3f} s")
             column.separator()
             draw_value(column, say("Total time"), f"{sum(stages.values()):.3f} s")
         if memory := report.memory(scene):
             column = layout.column(align=True)
             for name, size in memory.items():
-                draw_value(column, say(report.in_words(name)), f"{size / 2**20:.1f} MiB")
+                draw_value(column, say(report.label(name)), f"{size / 2**20:.1f} MiB")
 
 
 def _draw_finding(layout, finding, context):

@@ -66,7 +66,7 @@ class AFTERLIGHT_OT_place_views(OnEditableScene, Operator):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        found = view_scenes.placed(context.scene) if view_scenes.scout(context.scene) else None
+        found = view_scenes.stored_placement(context.scene) if view_scenes.placement_scene(context.scene) else None
         if found is None or not found.poses:
             cls.poll_message_set(
                 say("No views have been placed in this scene yet. Set Views to Automatic and press F12")
@@ -76,7 +76,7 @@ class AFTERLIGHT_OT_place_views(OnEditableScene, Operator):
 
     def execute(self, context):
         scene = context.scene
-        found, settings = view_scenes.placed(scene), scene.afterlight
+        found, settings = view_scenes.stored_placement(scene), scene.afterlight
         collection = bpy.data.collections.new(f"{scene.name}: {say('Views')}")
         scene.collection.children.link(collection)
         settings.view_cameras.clear()
@@ -101,8 +101,8 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if len(context.scene.afterlight.view_cameras) >= needs.MOST_VIEWS:
-            cls.poll_message_set(say("There can be at most {} views. Remove one first", needs.MOST_VIEWS))
+        if len(context.scene.afterlight.view_cameras) >= needs.MAX_VIEWS:
+            cls.poll_message_set(say("There can be at most {} views. Remove one first", needs.MAX_VIEWS))
             return False
         return True
 
@@ -110,7 +110,7 @@ class AFTERLIGHT_OT_view_add(OnEditableScene, Operator):
         scene, settings = context.scene, context.scene.afterlight
         listed = {each.camera for each in settings.view_cameras} | {scene.camera}
         chosen = [thing for thing in context.selected_objects if thing.type == "CAMERA" and thing not in listed]
-        for camera in (chosen or [None])[: needs.MOST_VIEWS - len(settings.view_cameras)]:
+        for camera in (chosen or [None])[: needs.MAX_VIEWS - len(settings.view_cameras)]:
             settings.view_cameras.add().camera = camera
         settings.view_camera = len(settings.view_cameras) - 1
         setup.connect_if_enabled(scene)

@@ -1,3 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The light in rendered viewports while one works: what they see, what is gathered for it, and how it gets under the
-overlays."""
+"""Indirect light in rendered viewports: what each sees, gathering its light, and adding that below the overlays."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adding light to what a viewport's engine has drawn, before Blender manages its colours and puts overlays and gizmos
-on top.
+"""Adding light to the image that a viewport's engine has drawn, before Blender applies colour management and draws
+overlays and gizmos.
 
-Blender draws a viewport into two textures, the engine's picture, scene-linear, and the overlays, and calls Python only
-where the second is bound; but for the very first of its calls (PRE_VIEW), where the first is. That framebuffer is
-remembered from there.
+Blender draws a viewport into two textures: the engine's image, scene-linear, and the overlays. It calls Python only
+while the second is bound, except for the very first call (PRE_VIEW), when the first is. That framebuffer is remembered
+from there.
 """
 
 from functools import cache
@@ -14,27 +14,27 @@ from gpu_extras.batch import batch_for_shader
 
 from ..gather import device
 
-VERTICES = (-1, -1), (3, -1), (-1, 3)  # of a triangle that holds the whole frame
+VERTICES = (-1, -1), (3, -1), (-1, 3)  # of a triangle that covers the whole frame
 
-# The framebuffer of the engine's picture, of the viewport that is being drawn; global, since Blender makes two calls.
+# Framebuffer of the engine's image, of the viewport that is being drawn; global, since Blender makes two calls.
 _picture = None
 
 
 def remember():
-    """Blender begins to draw a viewport."""
+    """Remember the framebuffer of the viewport that Blender begins to draw."""
     global _picture
     _picture = gpu.state.active_framebuffer_get()
 
 
 def forget():
-    """What remember() has kept may be gone from now on."""
+    """Forget the framebuffer, which may be freed from now on."""
     global _picture
     _picture = None
 
 
 def add(light, extent, strength):
-    """Add strength times a gather.Texture to the engine's picture of the viewport that has been drawn, extent (width,
-    height) pixels."""
+    """Add strength times a gather.Texture to the engine's image of the viewport. extent: (width, height) of the region
+    in pixels."""
     shader, batch = _show()
     blend, depth_test = gpu.state.blend_get(), gpu.state.depth_test_get()
     with _picture.bind():
@@ -47,7 +47,7 @@ def add(light, extent, strength):
             shader.uniform_float("strength", strength)
             batch.draw(shader)
         finally:
-            gpu.shader.unbind()  # as in device.dispatch()
+            gpu.shader.unbind()  # a shader that is freed while bound crashes Blender later, see device.dispatch()
             gpu.state.blend_set(blend)
             gpu.state.depth_test_set(depth_test)
 

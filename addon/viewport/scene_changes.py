@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What has changed in a scene since its viewports were lit: told by Blender's dependency graph, in two kinds. Where
-lamps alone have, the surfaces are where they were."""
+"""What has changed in a scene since its viewports were lit, counted from Blender's dependency graph in two kinds: if
+only lights changed, the surfaces are where they were."""
 
 from dataclasses import dataclass, replace
 
@@ -8,73 +8,73 @@ from bpy.app.handlers import persistent
 
 from ..host import events
 
-LAMPS = {"LIGHT", "WORLD"}
+LIGHT_TYPES = {"LIGHT", "WORLD"}
 
 
 @dataclass(frozen=True)
-class Stamps:
-    """How often something of a kind has changed."""
+class ChangeCounts:
+    """How often something of each kind has changed."""
 
-    lamps: int = 0
-    shapes: int = 0
-
-
-_stamps = {}  # by the scene's session_uid; global, since all viewports of a scene ask
-_outlines = {}  # what _outline() gave last; global like the stamps
+    lights: int = 0
+    geometry: int = 0
 
 
-def stamps(scene):
-    """Stamps of a scene."""
-    return _stamps.setdefault(scene.session_uid, Stamps())
+_counts = {}  # by the scene's session_uid; global, since all viewports of a scene ask
+_states = {}  # last result of _state(), by the same; global like the counts
+
+
+def change_counts(scene):
+    """ChangeCounts of a scene."""
+    return _counts.setdefault(scene.session_uid, ChangeCounts())
 
 
 @persistent
 def follow_edits(scene, depsgraph):
-    """Blender has evaluated what was edited."""
+    """Handler: Blender has evaluated what was edited."""
     if depsgraph.mode == "RENDER" or not (scene.afterlight.enabled and scene.afterlight.use_viewport):
         return
     changed = [
         update.id.original
         for update in depsgraph.updates
-        if update.id.id_type != "SCENE"  # which is said of any setting
+        if update.id.id_type != "SCENE"  # a scene is reported for a change of any setting
         and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)
     ]
-    outline = _outline(scene, depsgraph)
-    lamps = [each for each in changed if _is_lamp(each)]
-    trees = [each.node_tree for each in lamps if each.id_type in LAMPS]
-    if any(each not in lamps and each not in trees for each in changed) or _outlines.get(scene.session_uid) not in (
+    state = _state(scene, depsgraph)
+    lights = [each for each in changed if _is_light(each)]
+    trees = [each.node_tree for each in lights if each.id_type in LIGHT_TYPES]
+    if any(each not in lights and each not in trees for each in changed) or _states.get(scene.session_uid) not in (
         None,
-        outline,
+        state,
     ):
-        _change(scene, "shapes")
+        _count(scene, "geometry")
     elif changed:
-        _change(scene, "lamps")
-    _outlines[scene.session_uid] = outline
+        _count(scene, "lights")
+    _states[scene.session_uid] = state
 
 
 @persistent
 def follow_frames(scene, *_):
-    """Another frame is shown."""
-    _change(scene, "shapes")
+    """Handler: another frame is shown."""
+    _count(scene, "geometry")
 
 
 @persistent
 def forget(*_):
-    _stamps.clear()
-    _outlines.clear()
+    _counts.clear()
+    _states.clear()
 
 
-def _change(scene, kind):
-    known = stamps(scene)
-    _stamps[scene.session_uid] = replace(known, **{kind: getattr(known, kind) + 1})
+def _count(scene, kind):
+    counts = change_counts(scene)
+    _counts[scene.session_uid] = replace(counts, **{kind: getattr(counts, kind) + 1})
 
 
-def _is_lamp(thing):
-    return thing.id_type in LAMPS or (thing.id_type == "OBJECT" and thing.type == "LIGHT")
+def _is_light(datablock):
+    return datablock.id_type in LIGHT_TYPES or (datablock.id_type == "OBJECT" and datablock.type == "LIGHT")
 
 
-def _outline(scene, depsgraph):
-    """Of what changes without being called geometry, transform or shading: which objects are there, and EEVEE's
+def _state(scene, depsgraph):
+    """What can change without an update of geometry, transform or shading: which objects are visible, and EEVEE's
     settings."""
     eevee, layer = scene.eevee, depsgraph.view_layer
     return (

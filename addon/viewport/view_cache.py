@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The further views of a viewport: those that the last render placed, or the user listed, drawn small and kept on the
-GPU. When something in the scene changes they are drawn again, a few at a time."""
+"""The views of a viewport: those that the last render placed or the user listed, drawn small and kept on the GPU. When
+the scene changes they are drawn again, a few at a time."""
 
 import time
 from dataclasses import dataclass
@@ -18,118 +18,116 @@ from . import offscreen, scene_changes
 
 
 @dataclass(eq=False)
-class Kept:
-    """A view: its (view matrix, window matrix), what was drawn, gather.GpuPasses and gather.Camera, and the passes that
-    are to be drawn again."""
+class CachedView:
+    """A view. matrices: (view matrix, window matrix). drawn, camera: gather.GpuPasses and gather.Camera of what was
+    drawn. stale: names of the passes that must be drawn again."""
 
     matrices: tuple
     drawn: gather.GpuPasses
     camera: gather.Camera = None
-    stale: tuple = offscreen.ALL
+    stale: tuple = offscreen.ALL_PASSES
 
-    def age(self, names):
-        """These passes show the scene as it was."""
-        self.stale = tuple(name for name in offscreen.ALL if name in (*self.stale, *names))
+    def mark_stale(self, names):
+        """These passes must be drawn again."""
+        self.stale = tuple(name for name in offscreen.ALL_PASSES if name in (*self.stale, *names))
 
 
-class Further:
-    """Those of one 3D viewport, which may have several regions. film: eevee.Film for pictures of their size."""
+class ViewCache:
+    """The views of one 3D viewport, which may have several regions. offscreen_picture: offscreen.OffscreenPicture of
+    their size."""
 
     def __init__(self):
-        self.film, self._kept, self._wanted, self._stamps = offscreen.Film(), [], None, None
-        self._in_vain = None  # what place() saw where it found no place
+        self.offscreen_picture, self._views, self._wanted, self._counts = offscreen.OffscreenPicture(), [], None, None
+        self._failed_for = None  # the state in which place() found no position
 
-    def follow(self, stage):
-        """Be the views that the settings ask for, and know which of them show the scene as it was. Returns whether
-        they are others."""
-        size, pairs, stamps = interactive.coarse_size(stage.size), _matrices(stage), scene_changes.stamps(stage.scene)
-        wanted = size, stage.shows(), *(tuple(matrix.ravel()) for pair in pairs for matrix in pair)
+    def follow(self, viewport):
+        """Adopt the views that the settings ask for, and mark those stale that show an old state of the scene. Returns
+        whether the views themselves have changed."""
+        size, pairs = interactive.coarse_size(viewport.size), _matrices(viewport)
+        counts = scene_changes.change_counts(viewport.scene)
+        wanted = size, viewport.shown_state(), *(tuple(matrix.ravel()) for pair in pairs for matrix in pair)
         if wanted == self._wanted:
-            for each in self._kept:
-                each.age(
-                    offscreen.ALL
-                    if stamps.shapes != self._stamps.shapes
-                    else offscreen.LIT
-                    if stamps != self._stamps
-                    else ()
-                )
-            self._stamps = stamps
+            for each in self._views:
+                if counts.geometry != self._counts.geometry:
+                    each.mark_stale(offscreen.ALL_PASSES)
+                elif counts != self._counts:
+                    each.mark_stale(offscreen.LIGHT_PASSES)
+            self._counts = counts
             return False
-        self._wanted, self._stamps = wanted, stamps
-        self._kept = [
-            Kept(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.GpuPasses(size, {})) for pair in pairs
+        self._wanted, self._counts = wanted, counts
+        self._views = [
+            CachedView(tuple(Matrix(matrix.tolist()) for matrix in pair), gather.GpuPasses(size, {})) for pair in pairs
         ]
         return True
 
-    def place(self, stage, drawn, camera):
-        """Where no render has placed views yet, do as the scout of a render would (render/views_engine.py), by what
-        the viewport shows: gather.GpuPasses through gather.Camera. Once for each scene, or again when it has changed
-        where there was nothing to light it."""
-        scene, settings = stage.scene, stage.scene.afterlight
+    def place(self, viewport, drawn, camera):
+        """Place views as a render would (render/views_engine.py) if none has done so, by what the viewport shows:
+        `drawn`, gather.GpuPasses, seen by gather.Camera. This happens once for each scene, or again after a change if
+        nothing lit the image."""
+        scene, settings = viewport.scene, viewport.scene.afterlight
         if (
             not needs.views(scene)
             or settings.views != "AUTOMATIC"
-            or not view_scenes.scout(scene)
-            or view_scenes.placed(scene)
+            or not view_scenes.placement_scene(scene)
+            or view_scenes.stored_placement(scene)
         ):
             return
-        if self._in_vain == (self._wanted, self._stamps):
+        if self._failed_for == (self._wanted, self._counts):
             return
         start, rng = time.perf_counter(), np.random.default_rng(settings.seed)
-        geometry = ray_cast.Geometry(stage.depsgraph)
-        shown = main_view.Picture(scene, stage.layer, interactive.read(drawn), camera)
-        bounces, seen = shown.paths(placement.CHOOSING_PATHS, geometry, rng, settings.bounces)
-        if bounces is None:  # no surface lights what is shown
-            self._in_vain = self._wanted, self._stamps
+        geometry = ray_cast.Geometry(viewport.depsgraph)
+        main = main_view.MainView(scene, viewport.layer, interactive.read(drawn), camera)
+        paths, seen = main.trace_paths(placement.PLACEMENT_PATHS, geometry, rng, settings.bounces)
+        if paths is None:  # no surface sends light to what is shown
+            self._failed_for = self._wanted, self._counts
             return
-        poses = placement.place(bounces, seen, geometry.cast, view_cameras.HALF_FIELD, settings.view_count, rng)
-        shares = placement.covered(bounces, seen, geometry.cast, view_cameras.HALF_FIELD, poses)
-        view_scenes.keep_placed(scene, placement.Placement(poses, shares, placement.CLEARANCE * bounces.size))
-        report.covered(scene, shares, time.perf_counter() - start)
-        self.follow(stage)
+        poses = placement.place(paths, seen, geometry.cast, view_cameras.HALF_FIELD, settings.view_count, rng)
+        coverage = placement.coverage(paths, seen, geometry.cast, view_cameras.HALF_FIELD, poses)
+        view_scenes.store_placement(scene, placement.Placement(poses, coverage, placement.VIEW_CLEARANCE * paths.size))
+        report.keep_coverage(scene, coverage, time.perf_counter() - start)
+        self.follow(viewport)
 
     def is_stale(self):
-        return any(each.stale for each in self._kept)
+        return any(each.stale for each in self._views)
 
-    def refresh(self, stage, most):
-        """Draw at most so many views again. Within eevee.drawing()."""
-        for each in sorted([each for each in self._kept if each.stale], key=lambda each: len(each.stale), reverse=True)[
-            :most
-        ]:
-            camera = self.film.draw(stage, *each.matrices, each.drawn, each.stale)
-            each.camera, each.stale = camera or each.camera, ()
+    def refresh(self, viewport, max_views):
+        """Draw at most `max_views` stale views again. Call within offscreen.drawing()."""
+        stale_views = [view for view in self._views if view.stale]
+        for view in sorted(stale_views, key=lambda view: len(view.stale), reverse=True)[:max_views]:
+            camera = self.offscreen_picture.draw(viewport, *view.matrices, view.drawn, view.stale)
+            view.camera, view.stale = camera or view.camera, ()
 
     def views(self):
-        """[gather.View] of all that have been drawn."""
-        return [gather.View(each.drawn, each.camera, coarse=True) for each in self._kept if each.camera]
+        """[gather.View] of all views that have been drawn."""
+        return [gather.View(each.drawn, each.camera, coarse=True) for each in self._views if each.camera]
 
     def free(self):
-        self.film.free()
-        self._kept.clear()
+        self.offscreen_picture.free()
+        self._views.clear()
 
 
-def _matrices(stage):
+def _matrices(viewport):
     """[(view matrix, window matrix)], (4, 4) float64 each, of the views that the scene's settings ask for."""
-    scene, settings = stage.scene, stage.scene.afterlight
+    scene, settings = viewport.scene, viewport.scene.afterlight
     if not needs.views(scene):
         return []
     if settings.views == "MANUAL":
         cameras = [
-            each.camera.evaluated_get(stage.depsgraph)
+            each.camera.evaluated_get(viewport.depsgraph)
             for each in settings.view_cameras
             if each.camera and not view_scenes.unusable(each.camera)
-        ][: needs.MOST_VIEWS]
-        found = [
-            (np.array(camera.matrix_world.normalized()), view_cameras.lens_of(camera, stage.depsgraph, scene))
+        ][: needs.MAX_VIEWS]
+        poses_and_lenses = [
+            (np.array(camera.matrix_world.normalized()), view_cameras.lens_of(camera, viewport.depsgraph, scene))
             for camera in cameras
         ]
     else:
-        placed = view_scenes.placed(scene) if view_scenes.scout(scene) else None
-        far = max(
-            stage.space.clip_end, scene.camera.data.clip_end if scene.camera and scene.camera.type == "CAMERA" else 0
+        placement_stored = view_scenes.stored_placement(scene) if view_scenes.placement_scene(scene) else None
+        clip_end = max(
+            viewport.space.clip_end, scene.camera.data.clip_end if scene.camera and scene.camera.type == "CAMERA" else 0
         )
-        found = [
-            (np.asarray(pose), view_cameras.wide_lens(scene, placed.clearance / 4, far))
-            for pose in (placed.poses[: settings.view_count] if placed else ())
+        poses_and_lenses = [
+            (np.asarray(pose), view_cameras.wide_lens(scene, placement_stored.clearance / 4, clip_end))
+            for pose in (placement_stored.poses[: settings.view_count] if placement_stored else ())
         ]
-    return [(np.linalg.inv(pose), view_cameras.window_matrix(lens, scene)) for pose, lens in found]
+    return [(np.linalg.inv(pose), view_cameras.window_matrix(lens, scene)) for pose, lens in poses_and_lenses]

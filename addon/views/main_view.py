@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The main view as EEVEE has it: which of its points get light, and what it knows of the surfaces that send some."""
+"""The main view's finished passes: points on surfaces that receive light, and what the image tells of those that send
+it."""
 
 import numpy as np
 
@@ -7,56 +8,61 @@ from .. import gather
 from ..scene import cameras, materials
 from . import placement, ray_cast
 
+DEPTH_TOLERANCE = 1.01  # factor on a pixel's depth, up to which a point counts as visible; chosen by eye
+SURFACE_OFFSET = 1e-3  # of a point off its surface, as a share of its depth: above the depth's precision; chosen by eye
 
-class Picture:
-    """frame: gather.Passes of a view layer of `scene`, seen by gather.Camera."""
 
-    def __init__(self, scene, layer, frame, camera):
-        self._frame, self._camera, self._sky = frame, camera, materials.sky(layer.world_override or scene.world)
-        self._covered = self._sky if scene.afterlight.use_world_shadow else 0.0
+class MainView:
+    """passes: gather.Passes of a view layer of `scene`, as seen by gather.Camera."""
+
+    def __init__(self, scene, layer, passes, camera):
+        self._passes, self._camera = passes, camera
+        self._sky = materials.mean_radiance(layer.world_override or scene.world)
+        self._occluder_weight = self._sky if scene.afterlight.use_world_shadow else 0.0
 
     def receivers(self, count, rng):
-        """(places, normals, albedo) of `count` pixels spread over the picture."""
-        frame = self._frame
-        flat = placement.pixels((frame.depth > 0) & (frame.depth < gather.FARTHEST), count, rng)
-        row, column = np.divmod(flat, frame.size[0])
-        places = cameras.positions(frame, self._camera, flat)
-        normals = np.stack([axis[row, column] for axis in frame.normal], -1).astype(float)
-        albedo = np.mean([axis[row, column] for axis in frame.diffuse_color], 0)
-        # Off the surface by more than the depth's own precision.
-        off = 1e-3 * np.abs(frame.depth[row, column])[:, None]
-        return np.nan_to_num(places + off * normals), np.nan_to_num(normals), np.nan_to_num(albedo)
+        """(positions (N, 3), normals (N, 3), albedo (N,)) of at most `count` pixels spread over the image."""
+        passes = self._passes
+        pixels = placement.sample_pixels((passes.depth > 0) & (passes.depth < gather.FARTHEST), count, rng)
+        row, column = np.divmod(pixels, passes.size[0])
+        positions = cameras.positions(passes, self._camera, pixels)
+        normals = np.stack([axis[row, column] for axis in passes.normal], -1).astype(float)
+        albedo = np.mean([axis[row, column] for axis in passes.diffuse_color], 0)
+        offset = SURFACE_OFFSET * np.abs(passes.depth[row, column])[:, None]
+        return np.nan_to_num(positions + offset * normals), np.nan_to_num(normals), np.nan_to_num(albedo)
 
-    def sees(self, places, normals):
-        """(bool (N,), rows, columns): which of these points of surfaces the picture shows, and where."""
-        row, column, depth = cameras.project(places, self._frame.size, self._camera)
-        shown = self._frame.depth[row, column]
-        toward = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - places
-        return (row >= 0) & (depth < 1.01 * shown) & (np.sum(toward * normals, -1) > 0), row, column
+    def find_pixels(self, positions, normals):
+        """(bool (N,), rows, columns): which of these points on surfaces the image shows, and at which pixels."""
+        row, column, depth = cameras.project(positions, self._passes.size, self._camera)
+        depth_there = self._passes.depth[row, column]
+        to_camera = self._camera.rotation[2] if self._camera.orthographic else self._camera.position - positions
+        return (row >= 0) & (depth < DEPTH_TOLERANCE * depth_there) & (np.sum(to_camera * normals, -1) > 0), row, column
 
-    def paths(self, count, geometry, rng, bounces):
-        """(placement.Bounces of so many paths, or None, which of their points the picture shows)."""
-        found = placement.bounces(
-            *self.receivers(count, rng), geometry.cast, self.radiance_by(geometry, rng), rng, bounces
+    def trace_paths(self, count, geometry, rng, bounces):
+        """(placement.LightPaths of `count` paths, or None if there is no light; bool (N,), which of their points the
+        image shows)."""
+        light_paths = placement.trace(
+            *self.receivers(count, rng), geometry.cast, self.radiance_function(geometry, rng), rng, bounces
         )
-        return found, found and self.sees(found.places, found.normals)[0]
+        return light_paths, light_paths and self.find_pixels(light_paths.positions, light_paths.normals)[0]
 
-    def radiance_by(self, geometry, rng):
-        """What placement.bounces() asks: from the picture where it shows the point, else by the lamps and materials."""
+    def radiance_function(self, geometry, rng):
+        """The radiance() that placement.trace() calls: read from the image where it shows the point, else estimated
+        from lamps and materials."""
 
-        def radiance(places, normals, things):
-            albedo, emission = geometry.look(things)
-            seen, row, column = self.sees(places, normals)
-            direct = np.full(len(places), self._sky)
-            direct[~seen] += ray_cast.direct_light(geometry, places[~seen], normals[~seen], rng)
-            for guess, known in (
-                (direct, self._frame.diffuse_direct),
-                (albedo, self._frame.diffuse_color),
-                (emission, self._frame.emission),
+        def radiance(positions, normals, hit_materials):
+            albedo, emission = geometry.albedo_and_emission(hit_materials)
+            is_shown, row, column = self.find_pixels(positions, normals)
+            direct = np.full(len(positions), self._sky)
+            direct[~is_shown] += ray_cast.direct_light(geometry, positions[~is_shown], normals[~is_shown], rng)
+            for values, rendered in (
+                (direct, self._passes.diffuse_direct),
+                (albedo, self._passes.diffuse_color),
+                (emission, self._passes.emission),
             ):
-                shown = np.nan_to_num(np.mean([axis[row, column] for axis in known], 0), posinf=0.0)
-                guess[seen] = np.clip(shown[seen], 0, None)
-            # What stands before the world takes its light away, and must be seen as much as what sends some.
-            return direct, albedo, emission + self._covered
+                pixel_values = np.nan_to_num(np.mean([axis[row, column] for axis in rendered], 0), posinf=0.0)
+                values[is_shown] = np.clip(pixel_values[is_shown], 0, None)
+            # Occluders of the world take its light away: views must see them as well as they see emitters.
+            return direct, albedo, emission + self._occluder_weight
 
         return radiance

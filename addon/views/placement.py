@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where views must stand to see the surfaces that light the picture. Arrays and a function that casts rays; no Blender.
+"""Where views must stand to see the surfaces that light the image. Arrays and a function that casts rays; no Blender.
 
-Paths leave points of the picture as light bounces off them backwards, and go on from what they hit. That is what
-should be seen, weighed by the light that reaches the picture by way of it. Places on the paths are free and connected
-by construction. Of all such places and 26 directions the one that newly sees most is taken, until nothing much is new;
-then each is taken back, and what is best beside all others put in its stead. Other paths than those the places were
-chosen by say how much of the light is seen: the views fit their own better than the truth.
+Paths start at points of the image and follow light backwards as it bounces. The points that they hit are what views
+should see, weighted by the light that reaches the image by way of them. Positions on the paths are in free space and
+connected to the image by construction, so views are chosen among them: of all such positions and 26 directions the one
+that newly sees most is taken, until nothing much is gained; then each choice in turn is taken back and replaced by the
+best one beside all others. How much of the light is seen is measured by other paths than those used for the choice,
+since the views fit their own paths better than the truth.
 
-`cast(origins, directions, limits, nearest=True)` stands for the scene: arrays of (N, 3), (N, 3) and (N,), directions
-of length 1, to (distance, normal, thing): (N,), infinite where nothing lies within the limit; (N, 3), either side;
-(N,) int. Without `nearest` any hit within the limit will do, and only whether there is one matters.
+`cast(origins, directions, limits, nearest=True)` stands for the scene: it takes arrays (N, 3), (N, 3) and (N,), with
+directions of length 1, and returns (distance, normal, material): (N,), infinite if nothing lies within the limit; (N,
+3), facing either side; (N,) int. Without `nearest` any hit within the limit may be returned, and only whether there is
+one matters.
 """
 
 from dataclasses import dataclass, replace
@@ -17,186 +19,207 @@ from itertools import product
 
 import numpy as np
 
-PATHS = 1500  # that tell how much of the light is seen
-CHOOSING_PATHS = 4000  # that places are chosen by. Light may come by few of them, through a door,
-CHOOSING_POINTS = 2000  # so these are taken from what they hit, as often as there is light
-DEPTH = 4  # bounces of a path at most
-PLACES = 100  # on them, that a view may have
-ROUNDS = 3  # of taking views back, at most
-LEAST_GAIN = 0.005  # of all weight, that a further view must newly see
-CLEARANCE = 0.01  # of the scene's size, between a view and any surface
-LEAST_COSINE = 0.1  # between a surface and a view that sees it: at less, a pixel is too much of the surface
-DIM = 0.03  # of the mean light, that surfaces in the dark count for: the paths end too early for them
-FALL = 0.03  # of all weight: views that see less than when they were placed, by more than that, move
+SCORING_PATHS = 1500  # paths that measure how much of the light is seen
+PLACEMENT_PATHS = 4000  # paths that views are chosen by. Few of them may find the light, through a door,
+PLACEMENT_POINTS = 2000  # so this many of their points are resampled, by weight
+MAX_BOUNCES = 4  # bounces of a path
+CANDIDATE_POSITIONS = 100  # positions on the paths that are tried for a view
+MAX_EXCHANGE_ROUNDS = 3  # rounds of replacing each chosen view
+MIN_GAIN = 0.005  # share of the weight that one more view must newly see
+VIEW_CLEARANCE = 0.01  # distance between a view and any surface, as a share of the scene's size
+MIN_VIEW_COSINE = 0.1  # between a surface's normal and a view that sees it: at less a pixel covers too much of it
+DARK_WEIGHT = 0.03  # of the mean direct light, added everywhere: paths are too short to find the light of dark surfaces
+MAX_COVERAGE_LOSS = 0.03  # share of the light; if the views see that much less than when placed, they are placed anew
+
+# Tolerances, all chosen by eye.
+HIT_OFFSET = 1e-4  # offset of the next ray off the surface, as a share of the ray's length
+ALONG_PATH = 0.15, 0.85  # share of a path segment within which a view may stand: not at either surface
+KEEP_BONUS = 1.1  # factor on the gain of views that stand already, so that they don't move for little
+MIN_DISTANCE = 1e-4  # between a view and a point that it sees, as a share of the scene's size
+VISIBILITY_GAP = 3e-3  # share of the distance by which a visibility ray ends before its point
 
 DIRECTIONS = np.array([each for each in product((-1, 0, 1), repeat=3) if any(each)], float)
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
 @dataclass(frozen=True, eq=False)
-class Bounces:
-    """What lights the picture. starts, places, normals: (N, 3), of each ray. toward: (N,) int, index of the point that
-    starts it, by which light goes on to the picture; -1 for the picture itself. sent: (N,), the light that reaches the
-    picture after it was first reflected, or emitted, here; its sum is 1. weights: (N,), all light that passes here on
-    its way, a share. size: of the scene as far as the paths reach, metres."""
+class LightPaths:
+    """The points by way of which light reaches the image, one for each traced ray. starts, positions, normals: (N, 3),
+    where the ray starts and what it hits. parents: (N,) int, index of the point that the ray starts at, which is the
+    next on the light's way to the image; -1 for the image itself. contributions: (N,), the light that reaches the image
+    after being emitted or first reflected here, a share of all. weights: (N,), all light that passes here on its way,
+    normalised. size: extent of the scene as far as the paths reach, metres."""
 
     starts: np.ndarray
-    places: np.ndarray
+    positions: np.ndarray
     normals: np.ndarray
-    toward: np.ndarray
-    sent: np.ndarray
+    parents: np.ndarray
+    contributions: np.ndarray
     weights: np.ndarray
     size: float
 
-    def drawn(self, seen, count, rng):
-        """(Bounces, seen) of `count` draws from all, each as often as its weight. They don't know what they are
-        toward."""
-        ends = np.cumsum(self.weights)
-        at = (np.arange(count) + rng.random(count)) / count * ends[-1]
-        which, times = np.unique(np.minimum(np.searchsorted(ends, at), len(ends) - 1), return_counts=True)
+    def resampled(self, seen, count, rng):
+        """(LightPaths, seen) of `count` samples, with probabilities proportional to the weights. The result has no
+        parents."""
+        cumulative = np.cumsum(self.weights)
+        targets = (np.arange(count) + rng.random(count)) / count * cumulative[-1]
+        indices, counts = np.unique(
+            np.minimum(np.searchsorted(cumulative, targets), len(cumulative) - 1), return_counts=True
+        )
         return replace(
             self,
-            starts=self.starts[which],
-            places=self.places[which],
-            normals=self.normals[which],
-            toward=None,
-            sent=None,
-            weights=times / count,
-        ), seen[which]
+            starts=self.starts[indices],
+            positions=self.positions[indices],
+            normals=self.normals[indices],
+            parents=None,
+            contributions=None,
+            weights=counts / count,
+        ), seen[indices]
 
-    def only(self, which):
-        """These points alone. They don't know what they are toward. which: (N,) bool."""
+    def subset(self, mask):
+        """LightPaths of the points in `mask`, (N,) bool, alone. The result has no parents."""
         return replace(
             self,
-            starts=self.starts[which],
-            places=self.places[which],
-            normals=self.normals[which],
-            toward=None,
-            sent=None,
-            weights=self.weights[which],
+            starts=self.starts[mask],
+            positions=self.positions[mask],
+            normals=self.normals[mask],
+            parents=None,
+            contributions=None,
+            weights=self.weights[mask],
         )
 
-    def arrives(self, seen):
-        """The share of light that reaches the picture where only what is seen reflects it. seen: (N,) bool."""
-        whole = seen.copy()
-        for _ in range(DEPTH - 1):
-            whole = seen & np.where(self.toward < 0, True, whole[self.toward])
-        return float(self.sent @ whole)
+    def arriving_share(self, seen):
+        """The share of the light that reaches the image if only the points in `seen`, (N,) bool, send any on."""
+        arrives = seen.copy()
+        for _ in range(MAX_BOUNCES - 1):
+            arrives = seen & np.where(self.parents < 0, True, arrives[self.parents])
+        return float(self.contributions @ arrives)
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """poses: 4 x 4 matrices, view to world. coverage: what covered() says of them. clearance: from each pose to the
-    next surface, at least, metres."""
+    """poses: [(4, 4) view-to-world matrix]. coverage: shares of the light, as coverage() returns them. clearance:
+    minimum distance from each pose to a surface, metres."""
 
     poses: list
     coverage: list
     clearance: float
 
 
-def pixels(is_surface, count, rng):
-    """Indices of `count` pixels, spread evenly over those that show a surface; of all pixels, flat."""
-    found = np.flatnonzero(is_surface)
-    if not len(found):
-        return found
-    return found[np.minimum(((np.arange(count) + rng.random(count)) / count * len(found)).astype(int), len(found) - 1)]
+def sample_pixels(is_surface, count, rng):
+    """Flat indices of `count` pixels, spread evenly over those that show a surface. is_surface: (H, W) bool."""
+    surface_pixels = np.flatnonzero(is_surface)
+    if not len(surface_pixels):
+        return surface_pixels
+    chosen = ((np.arange(count) + rng.random(count)) / count * len(surface_pixels)).astype(int)
+    return surface_pixels[np.minimum(chosen, len(surface_pixels) - 1)]
 
 
-def bounces(places, normals, albedo, cast, radiance, rng, most=DEPTH):
-    """Bounces of a picture, or None where its light comes from nothing. places, normals: (N, 3), of pixels(). albedo:
-    (N,). most: bounces that count; at most DEPTH are followed.
+def trace(positions, normals, albedo, cast, radiance, rng, max_bounces=MAX_BOUNCES):
+    """LightPaths of an image, or None if no surface sends it light. positions, normals: (N, 3), albedo: (N,), of pixels
+    of the image. max_bounces: bounces that count; at most MAX_BOUNCES are traced.
 
-    radiance(places, normals, things): (direct light on a white surface, albedo, emission) of what is hit, (N,) each."""
+    radiance(positions, normals, materials) returns (direct light on a white surface, albedo, emission) of what was hit,
+    (N,) each."""
     length = np.linalg.norm(normals, axis=1)
-    usable = length > 0.5  # materials of pure emission have no normal
-    places, normals, share = places[usable], normals[usable] / length[usable, None], albedo[usable]
-    toward = np.full(len(places), -1)
+    usable = length > 0.5  # purely emissive materials have no normal
+    positions, normals, throughput = positions[usable], normals[usable] / length[usable, None], albedo[usable]
+    parents = np.full(len(positions), -1)
     levels, count = [], 0
-    for _ in range(min(most, DEPTH)):
-        directions = _cosine(normals, rng)
-        distance, normal, thing = cast(places, directions, np.full(len(places), np.inf))
+    for _ in range(min(max_bounces, MAX_BOUNCES)):
+        directions = _cosine_directions(normals, rng)
+        distance, hit_normal, material = cast(positions, directions, np.full(len(positions), np.inf))
         hit = np.isfinite(distance)
         if not hit.any():
             break
-        starts, directions, toward, share = places[hit], directions[hit], toward[hit], share[hit]
-        places = starts + directions * distance[hit, None]
-        normals = np.where(np.sum(normal[hit] * directions, 1)[:, None] > 0, -normal[hit], normal[hit])
-        direct, reflects, emission = radiance(places, normals, thing[hit])
-        levels.append((starts, places, normals, toward, share * (reflects * (direct + DIM * direct.mean()) + emission)))
-        toward, share = count + np.arange(len(places)), share * reflects
-        count += len(places)
-        places = places + 1e-4 * distance[hit, None] * normals  # off the surface
+        starts, directions, parents, throughput = positions[hit], directions[hit], parents[hit], throughput[hit]
+        positions = starts + directions * distance[hit, None]
+        normals = np.where(np.sum(hit_normal[hit] * directions, 1)[:, None] > 0, -hit_normal[hit], hit_normal[hit])
+        direct, reflectance, emission = radiance(positions, normals, material[hit])
+        sent = throughput * (reflectance * (direct + DARK_WEIGHT * direct.mean()) + emission)
+        levels.append((starts, positions, normals, parents, sent))
+        parents, throughput = count + np.arange(len(positions)), throughput * reflectance
+        count += len(positions)
+        positions = positions + HIT_OFFSET * distance[hit, None] * normals  # off the surface
     if not levels:
         return None
-    starts, places, normals, toward, sent = map(np.concatenate, zip(*levels, strict=True))
-    if not sent.sum() > 0:  # nothing is lit, or its light is not known
-        sent = np.ones(len(places))
-    sent = sent / sent.sum()
-    weights = sent.copy()
-    for index in range(count - 1, -1, -1):  # light from far passes all that is nearer to the picture
-        if toward[index] >= 0:
-            weights[toward[index]] += weights[index]
-    low, high = np.percentile(places, (5, 95), axis=0)
-    return Bounces(
-        starts, places, normals, toward, sent, weights / weights.sum(), float(max(np.linalg.norm(high - low), 1e-6))
+    starts, positions, normals, parents, contributions = map(np.concatenate, zip(*levels, strict=True))
+    if not contributions.sum() > 0:  # nothing is lit, or its light is unknown
+        contributions = np.ones(len(positions))
+    contributions = contributions / contributions.sum()
+    weights = contributions.copy()
+    for index in range(count - 1, -1, -1):  # from the far end: light passes all points nearer to the image
+        if parents[index] >= 0:
+            weights[parents[index]] += weights[index]
+    low, high = np.percentile(positions, (5, 95), axis=0)
+    return LightPaths(
+        starts,
+        positions,
+        normals,
+        parents,
+        contributions,
+        weights / weights.sum(),
+        float(max(np.linalg.norm(high - low), 1e-6)),
     )
 
 
-def place(light, seen, cast, half, most, rng, kept=()):
-    """Poses of at most `most` views. seen: (N,) bool, what the main view sees of `light`. half: tangents of half the
-    views' fields. kept: poses that stay before others are chosen where they see as much."""
-    light, seen = light.drawn(seen, CHOOSING_POINTS, rng)
-    unseen = light.only(~seen)
-    saw = [sees(pose, half, unseen, visible(pose[:3, 3], unseen, cast))[None] for pose in kept]
-    free = _free_places(light, cast, rng)
-    for position in free:
-        way = (unseen.places - position).astype(np.float32)
-        saw.append(visible(position, unseen, cast) & _in_frame(TO_VIEWS, way, half))
-    if not saw:
+def place(paths, seen, cast, half_field, max_views, rng, kept=()):
+    """Poses of at most `max_views` views. seen: (N,) bool, which points the main view sees. half_field: tangents of
+    half the views' fields of view. kept: poses that stand already, which stay unless others see more."""
+    paths, seen = paths.resampled(seen, PLACEMENT_POINTS, rng)
+    unseen = paths.subset(~seen)
+    sees_point = [in_frame(pose, half_field, unseen, visible(pose[:3, 3], unseen, cast))[None] for pose in kept]
+    positions = _free_positions(paths, cast, rng)
+    for position in positions:
+        offset = (unseen.positions - position).astype(np.float32)
+        sees_point.append(visible(position, unseen, cast) & _directions_in_frame(WORLD_TO_VIEW, offset, half_field))
+    if not sees_point:
         return []
-    saw = np.concatenate(saw)
-    saw_as_number, favour = saw.astype(np.float32), np.where(np.arange(len(saw)) < len(kept), 1.1, 1.0)
+    sees_point = np.concatenate(sees_point)
+    sees_number = sees_point.astype(np.float32)
+    bonus = np.where(np.arange(len(sees_point)) < len(kept), KEEP_BONUS, 1.0)
 
     def best_beside(chosen):
-        """(option, what it newly sees) beside those chosen."""
-        gain = saw_as_number @ np.where(saw[chosen].any(0), 0, unseen.weights).astype(np.float32)
-        best = int(np.argmax(gain * favour))
+        """(option, weight that it newly sees): the best one beside the chosen options."""
+        gain = sees_number @ np.where(sees_point[chosen].any(0), 0, unseen.weights).astype(np.float32)
+        best = int(np.argmax(gain * bonus))
         return best, gain[best]
 
     chosen = []
-    while len(chosen) < most:
+    while len(chosen) < max_views:
         best, gain = best_beside(chosen)
-        if gain < LEAST_GAIN:
+        if gain < MIN_GAIN:
             break
         chosen.append(best)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_EXCHANGE_ROUNDS):
         before = list(chosen)
         for option in before:
             chosen.remove(option)
             best, gain = best_beside(chosen)
-            if gain >= LEAST_GAIN:
+            if gain >= MIN_GAIN:
                 chosen.append(best)
         if set(chosen) == set(before):
             break
-    stands = [divmod(option - len(kept), len(DIRECTIONS)) for option in chosen]
+    candidates = [divmod(option - len(kept), len(DIRECTIONS)) for option in chosen]
     return [
-        kept[option] if option < len(kept) else looking(free[place], DIRECTIONS[way])
-        for option, (place, way) in zip(chosen, stands)
+        kept[option] if option < len(kept) else pose_looking(positions[position_index], DIRECTIONS[direction_index])
+        for option, (position_index, direction_index) in zip(chosen, candidates)
     ]
 
 
-def covered(light, seen, cast, half, poses):
-    """Bounces.arrives() of what the main view sees, and with each pose."""
-    seen, shares = seen.copy(), [light.arrives(seen)]
+def coverage(paths, seen, cast, half_field, poses):
+    """Shares of the light that arrives (LightPaths.arriving_share()): of what the main view sees, then with each pose
+    added."""
+    seen, shares = seen.copy(), [paths.arriving_share(seen)]
     for pose in poses:
-        new = ~seen & sees(pose, half, light, True)
-        seen[new] = visible(pose[:3, 3], light.only(new), cast)
-        shares.append(light.arrives(seen))
+        new = ~seen & in_frame(pose, half_field, paths, True)
+        seen[new] = visible(pose[:3, 3], paths.subset(new), cast)
+        shares.append(paths.arriving_share(seen))
     return shares
 
 
-def looking(position, direction):
-    """The pose at `position` that looks along `direction`, upright."""
+def pose_looking(position, direction):
+    """The 4 x 4 pose at `position` that looks along `direction`, upright."""
     back = -direction / np.linalg.norm(direction)
     up = np.array([0.0, 1, 0]) if abs(back[2]) > 0.999 else np.array([0.0, 0, 1])
     right = np.cross(up, back)
@@ -206,52 +229,56 @@ def looking(position, direction):
     return pose
 
 
-def visible(position, light, cast):
-    """(N,) bool: what can be seen well from a place, in any direction. position: (3,), or (N, 3), one for each."""
-    to = light.places - position
-    far = np.linalg.norm(to, axis=1)
-    far = np.where(far > 0, far, 1.0)
-    found = (np.sum(to * light.normals, 1) < -LEAST_COSINE * far) & (far > 1e-4 * light.size)
-    to, limit = to[found] / far[found, None], far[found] * (1 - 3e-3) - 1e-4 * light.size
-    distance, _, _ = cast(np.broadcast_to(position, light.places.shape)[found], to, limit, nearest=False)
-    found[found] = ~np.isfinite(distance)
-    return found
+def visible(position, paths, cast):
+    """(N,) bool: which points can be seen well from a position, in any direction. position: (3,), or (N, 3), one for
+    each."""
+    to_point = paths.positions - position
+    length = np.linalg.norm(to_point, axis=1)
+    length = np.where(length > 0, length, 1.0)
+    is_visible = (np.sum(to_point * paths.normals, 1) < -MIN_VIEW_COSINE * length) & (
+        length > MIN_DISTANCE * paths.size
+    )
+    to_point = to_point[is_visible] / length[is_visible, None]
+    limits = length[is_visible] * (1 - VISIBILITY_GAP) - MIN_DISTANCE * paths.size
+    distance, _, _ = cast(np.broadcast_to(position, paths.positions.shape)[is_visible], to_point, limits, nearest=False)
+    is_visible[is_visible] = ~np.isfinite(distance)
+    return is_visible
 
 
-def sees(pose, half, light, reached):
-    """(N,) bool: what of `reached` lies in the frame."""
-    return reached & _in_frame(pose[:3, :3].T, light.places - pose[:3, 3], half)
+def in_frame(pose, half_field, paths, candidates):
+    """(N,) bool: which of the points in `candidates`, (N,) bool or True, lie in the frame of a pose."""
+    return candidates & _directions_in_frame(pose[:3, :3].T, paths.positions - pose[:3, 3], half_field)
 
 
-def _in_frame(to_view, way, half):
-    """(..., N) bool: what lies that way, (N, 3), from a view is in its frame. to_view: (..., 3, 3), of each view."""
-    x, y, z = np.moveaxis(to_view @ way.T, -2, 0)
-    return (np.abs(x) < -z * half[0]) & (np.abs(y) < -z * half[1])
+def _directions_in_frame(to_view, directions, half_field):
+    """(..., N) bool: whether directions, (N, 3), from a view lie in its frame. to_view: (..., 3, 3), rotation of each
+    view."""
+    x, y, z = np.moveaxis(to_view @ directions.T, -2, 0)
+    return (np.abs(x) < -z * half_field[0]) & (np.abs(y) < -z * half_field[1])
 
 
-def _free_places(light, cast, rng):
-    chosen = rng.integers(len(light.places), size=PLACES)
-    along = rng.uniform(0.15, 0.85, PLACES)[:, None]
-    found = light.starts[chosen] * (1 - along) + light.places[chosen] * along
-    origins, directions = np.repeat(found, len(DIRECTIONS), 0), np.tile(DIRECTIONS, (len(found), 1))
-    distance, _, _ = cast(origins, directions, np.full(len(origins), CLEARANCE * light.size), nearest=False)
-    return found[~np.isfinite(distance).reshape(len(found), -1).any(1)]
+def _free_positions(paths, cast, rng):
+    chosen = rng.integers(len(paths.positions), size=CANDIDATE_POSITIONS)
+    along = rng.uniform(*ALONG_PATH, CANDIDATE_POSITIONS)[:, None]
+    positions = paths.starts[chosen] * (1 - along) + paths.positions[chosen] * along
+    origins, directions = np.repeat(positions, len(DIRECTIONS), 0), np.tile(DIRECTIONS, (len(positions), 1))
+    distance, _, _ = cast(origins, directions, np.full(len(origins), VIEW_CLEARANCE * paths.size), nearest=False)
+    return positions[~np.isfinite(distance).reshape(len(positions), -1).any(1)]
 
 
-def _cosine(normals, rng):
-    """A direction about each normal, as often as light leaves a matt surface that way."""
+def _cosine_directions(normals, rng):
+    """A random direction about each normal, with cosine-weighted probability."""
     radius, angle = np.sqrt(rng.random(len(normals))), 2 * np.pi * rng.random(len(normals))
     axis = np.where(np.abs(normals[:, :1]) > 0.9, (0.0, 1, 0), (1.0, 0, 0))
     side = np.cross(normals, axis)
     side /= np.linalg.norm(side, axis=1)[:, None]
-    found = (
+    directions = (
         side * (radius * np.cos(angle))[:, None]
         + np.cross(normals, side) * (radius * np.sin(angle))[:, None]
         + normals * np.sqrt(1 - radius**2)[:, None]
     )
-    return found / np.linalg.norm(found, axis=1)[:, None]
+    return directions / np.linalg.norm(directions, axis=1)[:, None]
 
 
-TO_VIEWS = np.array(
-    [looking(np.zeros(3), direction)[:3, :3].T for direction in DIRECTIONS], np.float32
-)  # turns, to each of them
+# The rotation from world to view, for each of DIRECTIONS.
+WORLD_TO_VIEW = np.array([pose_looking(np.zeros(3), direction)[:3, :3].T for direction in DIRECTIONS], np.float32)

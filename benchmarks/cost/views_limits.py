@@ -151,7 +151,7 @@ def main():
         _, again = status.coverage(scene)
         print(
             f"| {name} | {first:.2f} | {again:.2f} | {shares[0]:.0%} | {shares[-1]:.0%} | "
-            f"{len(views.placed(scene).poses)} |",
+            f"{len(views.stored_placement(scene).poses)} |",
             *warnings,
             scene.afterlight.report,
             flush=True,

@@ -87,12 +87,12 @@ def measure(path, frames, travel, samples, size, afterlight):
             for frame, camera.matrix_world in enumerate(matrices):
                 has_views = scene.afterlight.enabled and views.wanted(scene)
                 if has_views and anew:
-                    views.forget_placed(scene)
+                    views.forget_placement(scene)
                 _, final = candidates.written(scene)
                 if scene.afterlight.enabled and scene.afterlight.report:
                     sys.exit(scene.afterlight.report)
                 found.append(blocks(way.bounced(scene, final, plain[frame])) - true[frame])
-                known = views.placed(scene) if has_views else None
+                known = views.stored_placement(scene) if has_views else None
                 seen.append(np.array(known.poses).ravel().tolist() if known else [])
         print(f"{way.name}: {frames} frames", file=sys.stderr, flush=True)
     return {name: np.array(each) for name, each in errors.items()}, np.array(noise), float(np.mean(true)), poses

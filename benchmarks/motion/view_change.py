@@ -27,8 +27,8 @@ def measure(scene, frames, average, afterlight):
     views, again = afterlight.addon.compositor.view_scenes, frames // 2 + 1
 
     def see_too_little(changed, *_):
-        if changed.frame_current == again and (known := views.placed(changed)):
-            views.keep_placed(
+        if changed.frame_current == again and (known := views.stored_placement(changed)):
+            views.store_placement(
                 changed, type(known)(known.poses, [share + 1 for share in known.coverage], known.clearance)
             )
 

@@ -34,14 +34,14 @@ def study(seeds, size, afterlight):
     scene.afterlight.method, scene.afterlight.enabled = "RADIOSITY", True
     print("| `LEAST_COSINE` | energy, mean | standard deviation | views |\n|---|---:|---:|---|")
     for cosine in (0.0, 0.05, 0.1, 0.2, 0.3):
-        placement.LEAST_COSINE = cosine
+        placement.MIN_VIEW_COSINE = cosine
         energies, counts = [], []
         for seed in range(seeds):
-            views.forget_placed(scene)
+            views.forget_placement(scene)
             scene.afterlight.seed = seed
             _, final = candidates.written(scene)
             energies.append((final.mean() - plain.mean()) / true)
-            counts.append(len(views.placed(scene).poses))
+            counts.append(len(views.stored_placement(scene).poses))
         print(
             f"| {cosine} | {np.mean(energies):.3f} | {np.std(energies):.3f} | {', '.join(map(str, counts))} |",
             flush=True,

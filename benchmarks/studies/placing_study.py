@@ -42,7 +42,7 @@ def opened(name):
 
 
 def main_view(scene, depsgraph, geometry):
-    """picture.Picture by rays through the camera."""
+    """A MainView made by rays through the camera."""
     camera = addon.scene.cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
     i, j = np.meshgrid(*(np.arange(count) + 0.5 for count in SIZE))
     ray = camera.offset + camera.scale * np.stack([i, j[::-1]], -1).reshape(-1, 2)  # rows top first
@@ -54,14 +54,14 @@ def main_view(scene, depsgraph, geometry):
     hit = np.isfinite(far)
     normal[np.sum(normal * way, 1) > 0] *= -1
     color, emission, direct = np.zeros((3, len(way)))
-    color[hit], emission[hit] = geometry.look(thing[hit])
+    color[hit], emission[hit] = geometry.albedo_and_emission(thing[hit])
     places = start[hit] + way[hit] * (far / length)[hit, None]
     direct[hit] = rays.direct_light(geometry, places, normal[hit], np.random.default_rng(0))
     depth, color, emission, direct, *normal = (
         each.reshape(SIZE[::-1]) for each in (np.where(hit, far / length, 1e10), color, emission, direct, *normal.T)
     )
     frame = light.Passes(depth, tuple(normal), (color,) * 3, (direct,) * 3, (emission,) * 3)
-    return addon.views.main_view.Picture(scene, scene.view_layers[0], frame, camera)
+    return addon.views.main_view.MainView(scene, scene.view_layers[0], frame, camera)
 
 
 def study(name, seeds):
@@ -72,13 +72,13 @@ def study(name, seeds):
         rng, marks = np.random.default_rng(seed), [time.process_time()]
         geometry = rays.Geometry(depsgraph)
         marks.append(time.process_time())
-        picture.paths(placement.PATHS, geometry, rng, placement.DEPTH)
-        found, seen = picture.paths(placement.CHOOSING_PATHS, geometry, rng, placement.DEPTH)
+        picture.trace_paths(placement.SCORING_PATHS, geometry, rng, placement.MAX_BOUNCES)
+        found, seen = picture.trace_paths(placement.PLACEMENT_PATHS, geometry, rng, placement.MAX_BOUNCES)
         marks.append(time.process_time())
         poses = placement.place(found, seen, geometry.cast, addon.scene.view_cameras.HALF_FIELD, 7, rng)
         taken.append(np.diff([*marks, time.process_time()]))
-        told, shown = picture.paths(TELLING, geometry, np.random.default_rng(seed + 1000), placement.DEPTH)
-        shares.append(placement.covered(told, shown, geometry.cast, addon.scene.view_cameras.HALF_FIELD, poses)[-1])
+        told, shown = picture.trace_paths(TELLING, geometry, np.random.default_rng(seed + 1000), placement.MAX_BOUNCES)
+        shares.append(placement.coverage(told, shown, geometry.cast, addon.scene.view_cameras.HALF_FIELD, poses)[-1])
         counts.append(len(poses))
     read, paths, choosing = np.min(taken, 0)
     return (
@@ -91,10 +91,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", default=["crowd", "subdivided", "balls", "polygons"])
     parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--places", type=int, default=placement.PLACES)
-    parser.add_argument("--points", type=int, default=placement.CHOOSING_POINTS)
+    parser.add_argument("--places", type=int, default=placement.CANDIDATE_POSITIONS)
+    parser.add_argument("--points", type=int, default=placement.PLACEMENT_POINTS)
     wanted = parser.parse_args()
-    placement.PLACES, placement.CHOOSING_POINTS = wanted.places, wanted.points
+    placement.CANDIDATE_POSITIONS, placement.PLACEMENT_POINTS = wanted.places, wanted.points
     print(
         "| scene | reading, s | paths, s | choosing, s | seen | standard error | views |\n|---|---|---|---|---|---|---|"
     )

@@ -42,7 +42,7 @@ def study(path, size, afterlight):
     shares, first = status.coverage(scene)
     together = seconds("AUTOMATIC")
     _, again = status.coverage(scene)
-    count = len(views.placed(scene).poses)
+    count = len(views.stored_placement(scene).poses)
     return (
         f"| {path.stem} | {shares[0]:.0%} | {', '.join(f'{share:.0%}' for share in shares[1:])} | {first:.2f} | "
         f"{again:.2f} "

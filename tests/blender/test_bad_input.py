@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What cannot be lit: one clear message, the plain picture where there is one, settings as they were, no traceback."""
+"""Scenes that cannot be lit: one clear message, the plain image if there is one, unchanged settings, no traceback."""
 
 import io
 import os
@@ -27,14 +27,15 @@ def handlers(afterlight):
 
 @pytest.fixture(scope="module")
 def plain(afterlight, tmp_path_factory):
-    """The box by EEVEE alone."""
+    """The box rendered by EEVEE alone."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     return read_rgb(render(box(bpy.context.scene, samples=1), tmp_path_factory.mktemp("plain") / "plain.exr"))
 
 
 @pytest.fixture
 def refuse(scene, tmp_path, capfd):
-    """Render; assert that the picture comes without light, with a message that holds `words`, and all is as before."""
+    """Render, and assert that the image has no indirect light, that a message contains `words`, and that nothing else
+    changed."""
 
     def check(*words, picture=None):
         scene.render.filepath = str(tmp_path / "picture.exr")
@@ -109,7 +110,8 @@ def test_ray_tracing_never_doubles_the_light(scene, refuse, tmp_path):
 
 
 def test_single_layer(scene, refuse, tmp_path):
-    """Blender then adds what the helper scene rendered last, so the light of another frame must be kept out."""
+    """With Render Single Layer, Blender adds what the helper scene rendered last; the light of another frame must not
+    get in."""
     lamp = bpy.data.objects["Lamp"]
     there, lamp.location.x = lamp.location.x, -1
     scene.afterlight.enabled = False
@@ -122,9 +124,9 @@ def test_single_layer(scene, refuse, tmp_path):
 
 
 def test_compositing_switched_off(scene, plain, tmp_path, afterlight):
-    """Without a window nobody can press Repair, so it is put right; with one the panel says so."""
+    """Without a window nobody can press Repair, so it is repaired; with a window the panel reports it."""
     scene.render.use_compositing = False
-    (fault,) = afterlight.addon.compositor.setup.faults(scene)
+    (fault,) = afterlight.addon.compositor.faults.find(scene)
     assert "Compositing is disabled" in fault
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     assert (lit - plain).mean() > 0 and scene.afterlight.report == ""
@@ -133,7 +135,7 @@ def test_compositing_switched_off(scene, plain, tmp_path, afterlight):
 def test_temporary_folder_cannot_be_written(scene, refuse, plain):
     folder = bpy.app.tempdir.rstrip("/")
     shutil.rmtree(folder)
-    open(folder, "w").close()  # root, as whom tests may run, writes even to a read-only folder; not to this
+    open(folder, "w").close()  # tests may run as root, who can write even to a read-only folder, but not to this
     try:
         refuse("could not be written", folder, "Temporary Files", picture=plain)
     finally:
@@ -142,7 +144,7 @@ def test_temporary_folder_cannot_be_written(scene, refuse, plain):
 
 
 def test_disk_full(scene, refuse, plain):
-    """No room for the passes, though there is for the picture."""
+    """No space for the passes, though there is for the image."""
     resource = pytest.importorskip("resource", reason="needs a limit for the size of files")
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, before[1]))
@@ -180,7 +182,7 @@ def test_nan_and_infinity_in_a_pass(scene, plain, afterlight, monkeypatch, tmp_p
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     gain = lit - plain
     assert np.isfinite(lit).all() and gain.mean() > 0
-    # What has no surface gets no light; what has no direct light only sends none, and gets that of its neighbours.
+    # Pixels without a surface get no light; those without direct light only send none, and get that of others.
     assert not gain[10:12, 40:42].any() and gain[9, 40:42].all() and gain[6, 6].all()
     printed = "".join(capfd.readouterr())
     for words in ("9 pixels of diffuse direct", "1 pixels of emission", "4 pixels of normal"):
@@ -235,7 +237,7 @@ def closed():
 
 
 class Odd:
-    """Put there by another script."""
+    """An object that another script has put in the place of a stream."""
 
     def write(self, text):
         raise OSError("the pipe is broken")
@@ -243,7 +245,8 @@ class Odd:
 
 @pytest.mark.parametrize("terminal", [ascii_only, closed, Odd, lambda: None])
 def test_any_terminal(scene, handlers, monkeypatch, terminal):
-    """What a render begins with goes on after its messages: the light of the render before must be kept out."""
+    """before_render() must not stop at a message that can't be printed: the light of the previous render must be kept
+    out."""
     scene.camera.data.type, scene.camera.name = "PANO", "Kämera"
     stream = terminal()
     monkeypatch.setattr(sys, "stdout", stream)
@@ -270,7 +273,7 @@ def test_any_terminal_for_an_error_of_our_own(scene, afterlight, monkeypatch, tm
 
 
 def test_background_render_makes_what_python_saves_passes_through(scene, afterlight):
-    """`blender -b -f 1` starts without the image that F12 makes."""
+    """`blender -b -f 1` starts without the image Render Result, which F12 makes and passes are saved through."""
     handlers = afterlight.addon.render.handlers
     while afterlight.addon.scene.frame_store.render_result():
         bpy.data.images.remove(afterlight.addon.scene.frame_store.render_result())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How noise is taken out of the light: smoothed, by Blender's Denoise node, or left in."""
+"""The ways to remove noise from the light: smoothing, Blender's Denoise node, or none."""
 
 import bpy
 import numpy as np
@@ -31,7 +31,7 @@ def of_kind(scene, kind):
 
 
 def rough(picture):
-    """Mean square of what the four neighbours do not have: noise, for the most part."""
+    """Mean square of each pixel's difference from its four neighbours: mostly noise."""
     return np.mean(
         (picture[1:-1, 1:-1] - (picture[2:, 1:-1] + picture[:-2, 1:-1] + picture[1:-1, 2:] + picture[1:-1, :-2]) / 4)
         ** 2
@@ -54,7 +54,7 @@ def test_each_way_takes_noise_out_and_no_light(scene, tmp_path):
 @pytest.mark.parametrize("kind", TREES)
 @pytest.mark.parametrize("glossy", [False, True])
 def test_the_node_comes_and_goes(scene, kind, glossy):
-    """In every kind of compositor, with the glossy light and without, whichever is ticked first."""
+    """In every kind of compositor, with the glossy light and without, whichever is enabled first."""
     TREES[kind](scene)
     before = written_down()
     settings = scene.afterlight
@@ -91,9 +91,9 @@ def test_a_deleted_node_is_missed_and_repaired(scene, afterlight):
     (denoise,) = of_kind(scene, "denoise")
     light = denoise.inputs["Image"].links[0].from_socket
     tree.nodes.remove(denoise)
-    faults = afterlight.addon.compositor.setup.faults
+    faults = afterlight.addon.compositor.faults.find
     assert [cure for cure in faults(scene).values()] == ["REPAIR"]
     bpy.ops.afterlight.repair()
     assert not faults(scene) and len(of_kind(scene, "denoise")) == len(of_kind(scene, "light")) == 1
-    tree.links.new(light, next(each for each in add.inputs if each.identifier == "B_Color"))  # past the node
+    tree.links.new(light, next(each for each in add.inputs if each.identifier == "B_Color"))  # bypasses the node
     assert any("Denoise node" in text for text in faults(scene))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The end of a process in which a render was not lit: exit code 1 of `blender -b`, a host's own where Blender is a
-module of its; and no file of the user's goes."""
+"""The end of a process in which a render was not lit: exit code 1 of `blender -b`, but not of a host program that uses
+Blender as a module; and no file of the user's is removed."""
 
 import os
 import subprocess
@@ -43,7 +43,7 @@ def test_a_host_of_blenders_module_ends_as_it_likes(afterlight, tmp_path):
 
 @pytest.fixture
 def scratch(tmp_path):
-    """A folder of everybody's temporary files, with some of the user's."""
+    """A shared temporary folder that contains files of the user."""
     for name in ("me/work.blend", "blender_notes/text", "passes_1.exr", "afterlight_mine/picture.exr"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()
@@ -55,19 +55,20 @@ def all_in(folder):
 
 
 def exit_code(afterlight, folder, failed=True):
-    """Of a child that ends as `blender -b` would, after it has written passes; and what lay in its folder before."""
-    status, temp_files = (getattr(afterlight.addon.host, name, None) for name in ("report", "temp_files"))
+    """The exit code of a child process that ends like `blender -b` after writing passes, and the files that were in its
+    folder just before."""
+    report, temp_files = (getattr(afterlight.addon.host, name, None) for name in ("report", "temp_files"))
     told, tell = os.pipe()
     child = os.fork()
     if child == 0:
-        status.bpy = SimpleNamespace(app=SimpleNamespace(tempdir=f"{folder}{os.sep}"))
+        report.bpy = SimpleNamespace(app=SimpleNamespace(tempdir=f"{folder}{os.sep}"))
         if temp_files:
-            temp_files.bpy = status.bpy
+            temp_files.bpy = report.bpy
             temp_files._folders.clear()
             Path(temp_files.new(1)).touch()
         os.write(tell, "\n".join(all_in(folder)).encode())
-        status._failed = failed
-        status._exit_code()
+        report._failed = failed
+        report._exit_code()
         os._exit(7)
     os.close(tell)
     with os.fdopen(told) as answer:
@@ -92,7 +93,7 @@ def test_what_else_lies_in_blenders_folder_stays(afterlight, scratch):
 
 
 def test_where_blender_could_not_make_a_folder(afterlight, scratch):
-    """It falls back to everybody's: an unwritable one, or one on a full disk."""
+    """Blender then falls back to the shared temporary folder: because its own is unwritable, or the disk is full."""
     before = all_in(scratch)
     assert exit_code(afterlight, scratch)[0] == 1 and all_in(scratch) == before
 

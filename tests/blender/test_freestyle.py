@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Freestyle's lines lie over the light, as over the plain picture, and leave no trace in the file."""
+"""Freestyle lines cover the light as they cover the plain image, and leave no trace in the file."""
 
 import bpy
 import numpy as np
@@ -24,7 +24,7 @@ def scene(fresh):
     if settings.linesets[0].linestyle is None:
         settings.linesets[0].linestyle = bpy.data.linestyles.new("Lines")
     style(scene, 3.0)
-    bpy.data.objects["Lamp"].data.use_shadow = False  # so that all that is black is a line
+    bpy.data.objects["Lamp"].data.use_shadow = False  # so that only lines are black
     panel = wall(matt("Panel", (0.8, 0.8, 0.8)), (0, 0.8, 0), (90, 0, 0))
     panel.scale = 0.4, 0.4, 0.4
     return scene
@@ -46,14 +46,14 @@ def test_unticking_leaves_the_file_as_it_was(scene, addon, kind):
         layer.use_freestyle = True
     before = written_down()
     scene.afterlight.enabled = True
-    wiring, tree = addon.compositor.setup, scene.compositing_node_group
-    assert not wiring.faults(scene) and scene.view_layers[0].freestyle_settings.as_render_pass
+    tree = scene.compositing_node_group
+    assert not addon.compositor.faults.find(scene) and scene.view_layers[0].freestyle_settings.as_render_pass
     adding = [
         node for group in addon.compositor.nodes.trees(tree) for node in group.nodes if node.get("afterlight") == "add"
     ]
     assert len([node for group in addon.compositor.nodes.trees(tree) for node in laid(group)]) == len(adding) > 0
     once = written_down()
-    wiring.connect(scene)
+    addon.compositor.setup.connect(scene)
     assert not differences(once, written_down())
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
@@ -63,7 +63,7 @@ def test_lines_that_are_a_pass_already_stay_one(scene, addon):
     scene.view_layers[0].freestyle_settings.as_render_pass = True
     before = written_down()
     scene.afterlight.enabled = True
-    assert not laid(scene.compositing_node_group) and not addon.compositor.setup.faults(scene)
+    assert not laid(scene.compositing_node_group) and not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
@@ -78,7 +78,7 @@ def test_lines_can_be_switched_while_ticked(scene, addon):
         scene.render.use_freestyle = wanted
         addon.compositor.setup.follow(scene)
         assert bool(laid(tree)) == layer.freestyle_settings.as_render_pass == wanted
-        assert not addon.compositor.setup.faults(scene)
+        assert not addon.compositor.faults.find(scene)
     assert not differences(without, written_down())
 
 
@@ -97,12 +97,12 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
         for user in users:
             tree.links.new(lit, user)
     elif "add" in doomed and kind == "simple":
-        assert addon.compositor.setup.faults(scene)
+        assert addon.compositor.faults.find(scene)
         for user in users:
             tree.links.new(picture.outputs["Image"], user)
-    assert addon.compositor.setup.faults(scene)
+    assert addon.compositor.faults.find(scene)
     assert bpy.ops.afterlight.repair() == {"FINISHED"}
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert [
         len([node for node in tree.nodes if node.get("afterlight") == name]) for name in ("add", "light", "lines")
     ] == [1, 1, 1]
@@ -111,7 +111,7 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
 
 
 def test_lines_over_the_light(scene, addon, tmp_path, monkeypatch):
-    """Black lines stay black, and what half-transparent ones let through is lit as the plain picture is drawn over."""
+    """Black lines stay black. What half-transparent lines let through is lit, as they let the plain image through."""
     handed, engine = [], addon.render.engine.AfterlightEngine
     hand_back = engine._hand_back
 
@@ -136,7 +136,9 @@ def test_lines_over_the_light(scene, addon, tmp_path, monkeypatch):
     plain, lit, light = shown(False), shown(True), handed[-1]
     cut = addon.scene.exr.read(addon.render.frames.kept(scene).path, addon.scene.cameras.window(scene)[0])
     clear = np.stack([cut(f"{scene.view_layers[0].name}.Combined.{axis}") for axis in "RGB"], -1)
-    seen = (color[1] - plain[..., 1]) / (color[1] - clear[..., 1])  # what the lines let through of the plain picture
+    seen = (color[1] - plain[..., 1]) / (
+        color[1] - clear[..., 1]
+    )  # share of the plain image that the lines let through
     assert ((seen > 0.2) & (seen < 0.8)).sum() > 50 and (seen > 0.999).sum() > 50
     off = np.abs(lit - plain - seen[..., None] * light)
     assert np.quantile(off, 0.99) < 2e-3 and off.max() < 0.03, "but for a few pixels where lines are drawn anew"

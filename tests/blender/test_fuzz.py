@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A minute of what people do to files in any order, and of files that claim anything. `make fuzz` goes on for an
-hour."""
+"""A minute of user actions in random order, and of files with random claims. `make fuzz` runs for an hour."""
 
 import os
 import subprocess
@@ -14,7 +13,7 @@ TESTS = Path(__file__).resolve().parents[1]
 
 @pytest.mark.parametrize("kind, examples", [("machine", 4), ("claims", 25), ("files", 60)])
 def test_fuzz(afterlight, tmp_path, kind, examples):
-    """In a process of its own, since Blender may crash: the journal then says how."""
+    """In a process of its own, since Blender may crash: the journal then tells what led to it."""
     journal = tmp_path / "journal.txt"
     run = subprocess.run(
         [

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Glossy Light, end to end: roughness of materials, its pass and nodes, what comes out, and that unticking takes it
-out."""
+"""Glossy Light, end to end: roughness of materials, its pass and nodes, the image, and removal."""
 
 import bpy
 import numpy as np
@@ -11,7 +10,7 @@ from scenes import TREES, box, differences, put, read_rgb, render, simple_tree, 
 
 @pytest.fixture
 def scene(fresh):
-    """The room of tests, with a shiny back wall."""
+    """The test room, with a shiny back wall."""
     scene = box(fresh, samples=2)
     scene.afterlight.method, scene.afterlight.views, scene.afterlight.bounces = "RADIOSITY", "CAMERA", 2
     shiny = metal("Shiny", 0.3)
@@ -49,9 +48,9 @@ NAMES = {
 
 def test_numbers_of_materials(addon):
     for name, number in NAMES.items():
-        assert addon.scene.roughness.cryptomatte(name) == number
-    for number in range(3000):  # about six of which would be no numbers, or denormal
-        bits = addon.scene.roughness.cryptomatte(f"Material.{number}")
+        assert addon.scene.roughness.cryptomatte_id(name) == number
+    for number in range(3000):  # about six of them would be infinite, NaN or denormal
+        bits = addon.scene.roughness.cryptomatte_id(f"Material.{number}")
         assert np.isfinite(np.uint32(bits).view(np.float32)) and bits >> 23 & 0xFF
 
 
@@ -147,7 +146,7 @@ def test_an_aov_of_that_name_is_taken_instead(scene, addon, tmp_path):
     assert not scene.view_layers[0].use_pass_cryptomatte_material
 
 
-# Wiring
+# Nodes
 
 
 @pytest.mark.parametrize("kind", TREES)
@@ -156,7 +155,7 @@ def test_unticking_leaves_the_file_as_it_was(scene, addon, kind):
     scene.afterlight.use_glossy = True
     before = written_down()
     scene.afterlight.enabled = True
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     tree = scene.compositing_node_group
     assert [node for group in addon.compositor.nodes.trees(tree) for node in of_kind(group, "gloss")]
     assert scene.view_layers[0].use_pass_glossy_color and scene.view_layers[0].use_pass_cryptomatte_material
@@ -174,7 +173,7 @@ def test_the_setting_can_be_switched_while_ticked(scene, addon, kind, how):
     before = written_down()
     for _ in range(2):
         scene.afterlight.use_glossy, scene.afterlight.method = True, "RADIOSITY"
-        assert not addon.compositor.setup.faults(scene)
+        assert not addon.compositor.faults.find(scene)
         once = written_down()
         addon.compositor.setup.connect(scene)
         assert not differences(once, written_down())
@@ -182,7 +181,7 @@ def test_the_setting_can_be_switched_while_ticked(scene, addon, kind, how):
             scene.afterlight.use_glossy = False
         else:
             scene.afterlight.method = "PAPER"
-        assert not addon.compositor.setup.faults(scene)
+        assert not addon.compositor.faults.find(scene)
         assert not scene.view_layers[0].use_pass_glossy_color
     assert not differences(before, written_down())
 
@@ -198,12 +197,12 @@ def test_deleted_nodes_are_noticed_and_repaired(scene, addon, kind, doomed):
     for name in doomed:
         for node in of_kind(tree, name):
             tree.nodes.remove(node)
-    assert addon.compositor.setup.faults(scene)
+    assert addon.compositor.faults.find(scene)
     if kind == "simple" and "add" in doomed:
         for user in users:
             tree.links.new(picture.outputs["Image"], user)
     assert bpy.ops.afterlight.repair() == {"FINISHED"}
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert [len(of_kind(tree, name)) for name in ("add", "light", "gloss")] == [1, 1, 1]
     scene.afterlight.enabled = False
     assert kind == "none" or not [node for node in tree.nodes if "afterlight" in node]
@@ -233,7 +232,7 @@ def test_a_pass_in_use_stays_on(scene):
 
 @pytest.fixture
 def handed(addon, monkeypatch):
-    """{pass: (H, W, 3), bottom row first} that the engine has handed back last."""
+    """{pass: (H, W, 3), bottom row first}, what the engine last returned to Blender."""
     found, engine = {}, addon.render.engine.AfterlightEngine
     hand_back = engine._hand_back
 
@@ -263,8 +262,7 @@ def test_probes_leave_it_out(scene, addon, tmp_path, handed):
 
 
 def test_gloss_reflects_the_room_once(scene, addon, tmp_path, handed):
-    """What the picture gains over the diffuse light is the pass Indirect Glossy: on the shiny wall alone, times
-    Strength."""
+    """The image gains the pass Indirect Glossy over the diffuse light: on the shiny wall alone, times Strength."""
     scene.afterlight.enabled = True
     diffuse = read_rgb(render(scene, tmp_path / "diffuse.exr"))
     assert set(handed) == {"Indirect"}

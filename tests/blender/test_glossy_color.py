@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the glossy light rests on: EEVEE's Glossy Color is the albedo of the lobe, and its reflections hold the whole
-world."""
+"""Two properties of EEVEE that the glossy light relies on: Glossy Color is the albedo of the specular lobe, and EEVEE's
+reflections include the whole world."""
 
 import bpy
 import numpy as np
@@ -37,7 +37,7 @@ def scene(fresh):
 
 
 def passes_of(scene, path, engine):
-    """{pass: (6, 3)} at the middle of the tiles."""
+    """{pass: (6, 3)} at the centres of the tiles."""
     scene.render.engine = engine
     set_format(scene, "OPEN_EXR_MULTILAYER")
     scene.render.filepath = str(path)

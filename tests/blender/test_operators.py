@@ -50,7 +50,7 @@ def test_settings_go_to_other_scenes(scene, addon):
     assert {name: getattr(three.afterlight, name) for name in names} == defaults
     assert bpy.ops.afterlight.copy_settings(enable=True) == {"FINISHED"}
     assert {name: getattr(three.afterlight, name) for name in names} == mine
-    assert two.afterlight.enabled and three.afterlight.enabled and not addon.compositor.setup.faults(three)
+    assert two.afterlight.enabled and three.afterlight.enabled and not addon.compositor.faults.find(three)
     with pytest.raises(RuntimeError, match='no other scene "Four"'):
         bpy.ops.afterlight.copy_settings(scene="Four")
 

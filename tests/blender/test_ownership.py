@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is the user's stays the user's: whatever a file claims, a script remaps, or somebody copies or links. Nothing
-is rendered."""
+"""What belongs to the user stays: whatever a file claims, a script remaps, or somebody copies or links. Nothing is
+rendered."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def addon(afterlight):
 
 @pytest.fixture
 def with_views(scene):
-    """A lit scene with two automatic views: four scenes of ours."""
+    """A lit scene with two automatic views: four helper scenes."""
     scene.afterlight.method, scene.afterlight.view_count = "RADIOSITY", 2
     scene.afterlight.enabled = True
     assert len(ours()) == 4
@@ -36,7 +36,7 @@ def ours():
 
 
 def settle():
-    """What Blender does after an edit."""
+    """Evaluate the scene, as Blender does after an edit."""
     bpy.context.view_layer.update()
     bpy.context.evaluated_depsgraph_get()
 
@@ -50,7 +50,7 @@ def precious():
 
 
 def test_a_script_that_ticks_every_scene(with_views):
-    """Faults 2: helper scenes got helpers of their own, without end."""
+    """Helper scenes used to get helpers of their own, without end."""
     before = [scene.name for scene in bpy.data.scenes]
     for _ in range(3):
         for scene in bpy.data.scenes:
@@ -63,13 +63,13 @@ def test_a_script_that_ticks_every_scene(with_views):
 @pytest.mark.parametrize("how", ["NEW", "EMPTY", "LINK_COPY", "FULL_COPY"])
 @pytest.mark.parametrize("kind", ["HELPER", "SCOUT", "VIEW"])
 def test_a_copied_helper_scene_is_the_users(with_views, addon, how, kind):
-    """Faults 12: the copy was deleted under Blender's feet."""
+    """The copy used to be deleted while Blender was still using it."""
     bpy.context.window.scene = next(scene for scene in ours() if scene.afterlight.role == kind)
     bpy.ops.scene.new(type=how)
     copy = bpy.context.scene
     for _ in range(2):
         settle()
-    assert copy.name in bpy.data.scenes and not addon.compositor.setup.faults(with_views)
+    assert copy.name in bpy.data.scenes and not addon.compositor.faults.find(with_views)
     assert not copy.afterlight.role or "You can delete it" in addon.diagnosis.checks.findings(copy)[0].text
     with_views.afterlight.enabled = False
     settle()
@@ -89,7 +89,7 @@ def test_a_copy_outlives_the_lit_scene(with_views, tmp_path):
 @pytest.mark.parametrize("what", ["object", "data"])
 @pytest.mark.parametrize("kind", ["HELPER", "VIEW"])
 def test_the_users_camera_in_a_helper_scene(with_views, what, kind):
-    """Faults 13: it was deleted with the scene."""
+    """It used to be deleted with the scene."""
     camera = with_views.camera
     helper = next(scene for scene in ours() if scene.afterlight.role == kind)
     if what == "object":
@@ -118,7 +118,7 @@ def test_an_object_that_is_nowhere_else_keeps_its_scene(with_views):
 
 @pytest.mark.parametrize("is_elsewhere", [True, False])
 def test_a_collection_in_a_helper_scene(with_views, is_elsewhere):
-    """What is in the lit scene as well is not lost with the helper, so that nothing is left of it; else the scene
+    """If the lit scene contains it as well, nothing is lost with the helper, which goes; otherwise the helper scene
     stays."""
     collection, thing = bpy.data.collections.new("Mine"), bpy.data.objects.new("Thing", None)
     collection.objects.link(thing)
@@ -154,7 +154,7 @@ CLAIMS = {
 @pytest.mark.parametrize("claim", CLAIMS)
 @pytest.mark.parametrize("ticked", [False, True], ids=["unticked", "ticked"])
 def test_what_a_file_claims(scene, tmp_path, claim, ticked):
-    """Faults 14: a pointer or a custom property made a scene ours, and it went."""
+    """A pointer or a custom property used to make any scene ours, and it was deleted."""
     path = str(tmp_path / "crafted.blend")
 
     def save_and_load():
@@ -187,7 +187,7 @@ def test_a_helper_that_is_remapped(with_views, addon):
     with_views.afterlight.helper.user_remap(other)
     settle()
     addon.compositor.setup.connect(with_views)
-    assert not addon.compositor.setup.faults(with_views) and len(ours()) == 4
+    assert not addon.compositor.faults.find(with_views) and len(ours()) == 4
     with_views.afterlight.enabled = False
     assert other.name == "Precious" and other.camera.name == "Treasure" and not ours()
 
@@ -198,7 +198,7 @@ def test_records_that_a_script_clears_multiply_nothing(with_views, addon):
         with_views.afterlight.view_scenes.clear()
         settle()
         addon.compositor.setup.connect(with_views)
-        assert len(ours()) == 4 and not addon.compositor.setup.faults(with_views)
+        assert len(ours()) == 4 and not addon.compositor.faults.find(with_views)
     with_views.afterlight.helper = None
     with_views.afterlight.view_scenes.clear()
     with_views.afterlight.enabled = False
@@ -207,7 +207,7 @@ def test_records_that_a_script_clears_multiply_nothing(with_views, addon):
 
 @pytest.mark.parametrize("value", [1, "text", ["use_pass_z", "x"], [1.5], {"a": 1}, ["use_pass_combined"]])
 def test_a_view_layers_property_of_our_name(scene, value):
-    """Faults 16: it brought TypeErrors."""
+    """It used to raise TypeErrors."""
     scene.view_layers[0]["afterlight"] = value
     before = written_down()
     scene.afterlight.enabled = True
@@ -230,7 +230,7 @@ def test_nodes_of_the_user_with_a_property_of_our_name(scene, addon, kind):
         node["afterlight"] = kind
     before = written_down()
     scene.afterlight.enabled = True
-    assert not addon.compositor.setup.faults(scene) and [
+    assert not addon.compositor.faults.find(scene) and [
         node for node in tree.nodes if addon.compositor.nodes.role(node) == "add"
     ]
     scene.afterlight.enabled = False
@@ -283,8 +283,8 @@ GARBAGE = {
 @pytest.mark.parametrize("kind", GARBAGE)
 def test_a_placement_of_garbage_is_none(with_views, addon, kind):
     views = addon.compositor.view_scenes
-    views.scout(with_views)["placed"] = GARBAGE[kind]
-    assert views.placed(with_views) is None
+    views.placement_scene(with_views)["placed"] = GARBAGE[kind]
+    assert views.stored_placement(with_views) is None
 
 
 def test_a_placement_is_read_as_it_was_kept(with_views, addon):
@@ -292,15 +292,15 @@ def test_a_placement_is_read_as_it_was_kept(with_views, addon):
 
     pose = np.eye(4)
     pose[:3, 3] = 1, 2, 3
-    addon.compositor.view_scenes.keep_placed(with_views, addon.views.placement.Placement([pose], [0.5, 0.9], 0.25))
-    found = addon.compositor.view_scenes.placed(with_views)
+    addon.compositor.view_scenes.store_placement(with_views, addon.views.placement.Placement([pose], [0.5, 0.9], 0.25))
+    found = addon.compositor.view_scenes.stored_placement(with_views)
     np.testing.assert_allclose(found.poses, [pose])
     assert (found.coverage, found.clearance) == ([0.5, 0.9], 0.25)
 
 
 def test_a_file_of_0_3_0(afterlight, addon):
-    """Its helper scenes become ours, what only looks like one stays, and unticking leaves the file as if it had never
-    been ticked."""
+    """Its helper scenes become ours, a scene that only resembles one stays, and unticking leaves no trace in the
+    file."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.wm.open_mainfile(filepath=str(OF_0_3_0))
     settle()
@@ -326,6 +326,6 @@ def test_a_scene_that_is_linked_from_a_file_of_0_3_0(fresh, addon):
     (scene,) = linked.scenes
     assert (
         scene.library
-        and addon.host.roles.source(scene.afterlight.helper) == scene
+        and addon.host.roles.lit_scene(scene.afterlight.helper) == scene
         and not addon.diagnosis.checks.findings(scene)
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The package: what is in it, what Blender makes of it on each platform, and that nothing stays behind."""
+"""The package: what it contains, what Blender makes of it on each platform, and that nothing is left behind."""
 
 import ast
 import json
@@ -133,7 +133,8 @@ zip_path = sys.argv[1]
 
 
 def another_blender(user_folder, package, script):
-    """Run a script in a Blender with `user_folder` for its preferences; return what it prints last, parsed as JSON."""
+    """Run a script in a Blender that keeps its preferences in `user_folder`; return the last line it prints, parsed as
+    JSON."""
     run = subprocess.run(
         [sys.executable, "-c", ANOTHER_BLENDER + textwrap.dedent(script), str(package)],
         text=True,
@@ -173,7 +174,7 @@ def test_nothing_stays_registered(tmp_path, package):
 
 
 def test_openexr_comes_from_the_wheel_in_the_zip(tmp_path, package):
-    """Blender puts the wheels' folder ahead of Python's own at its next start, where this looks for it."""
+    """At its next start, where this looks, Blender puts the folder of wheels ahead of Python's own."""
     another_blender(tmp_path, package, "extension.install(zip_path); os.write(1, b'{}\\n'); os._exit(0)")
     result = another_blender(
         tmp_path,
@@ -188,7 +189,7 @@ def test_openexr_comes_from_the_wheel_in_the_zip(tmp_path, package):
 
 
 def imports(tree):
-    """(level, module's first name, line) of every import in a syntax tree, at any depth."""
+    """(level, first name of the module, line) of every import in a syntax tree, at any depth."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for name in node.names:
@@ -198,7 +199,8 @@ def imports(tree):
 
 
 def run_at_import(tree):
-    """The expressions that run when a module is imported: everything outside functions, and functions' defaults."""
+    """The expressions that run when a module is imported: everything outside functions, and the defaults of
+    functions."""
     waiting = list(tree.body)
     while waiting:
         node = waiting.pop()

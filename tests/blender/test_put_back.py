@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The user's settings of files and videos are after each save of the passes what they were before."""
+"""The user's settings of files and videos are unchanged after each save of the passes."""
 
 import bpy
 import pytest
@@ -9,7 +9,7 @@ from scenes import box, render
 
 @pytest.fixture(scope="module")
 def rendered(afterlight, tmp_path_factory):
-    """A scene whose render is there to be saved."""
+    """A scene with a finished render that can be saved."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = box(bpy.context.scene, samples=1)
     scene.afterlight.enabled = True
@@ -18,7 +18,7 @@ def rendered(afterlight, tmp_path_factory):
 
 
 def written_down(*structs):
-    """{path: value} of all settings, whether they can be set or not."""
+    """{path: value} of all settings, writable or not."""
     found = {}
     for struct in structs:
         for name, prop in struct.bl_rna.properties.items():
@@ -33,7 +33,7 @@ def written_down(*structs):
 
 
 def check(scene, save):
-    """A save that changes none of them. Returns what they are."""
+    """Save, and assert that no setting changed. Returns the settings."""
     render_settings = scene.render
     before = written_down(render_settings.image_settings, render_settings.ffmpeg)
     save(scene)
@@ -95,9 +95,9 @@ def test_the_look_the_display_and_stereo(rendered, afterlight, file_format, dept
 
 @pytest.mark.parametrize("file_format", ["PNG", "JPEG"])
 def test_a_colour_space_without_a_use(rendered, afterlight, file_format):
-    """The one setting that is not put back, since Blender warns where it was never chosen: that of linear formats,
-    where neither the format nor the scene asks for it. It is chosen anew with the next format, after a save as
-    without."""
+    """The one setting that is not restored, since reading it makes Blender warn if it was never set: the colour space
+    of linear formats, while neither the format nor the scene uses it. The next format sets it anew, with or without a
+    save."""
     image = choose(rendered, file_format, color_management="FOLLOW_SCENE")
     linear = image.linear_colorspace_settings
 
@@ -150,7 +150,7 @@ def test_the_format_of_views(rendered, afterlight, views_format):
 
 
 def test_a_whole_render(rendered, tmp_path):
-    """And its file is in the colour space that was asked for."""
+    """Its file is in the colour space that was asked for."""
     image = choose(rendered, "OPEN_EXR", color_management="OVERRIDE")
     image.linear_colorspace_settings.name = "Linear Rec.2020"
     check(rendered, lambda scene: render(scene, tmp_path / "picture.exr", None))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instant re-light: the picture of a fresh render with the new settings, without EEVEE, and nothing altered."""
+"""Update Indirect Light: the image of a fresh render with the new settings, without EEVEE, and nothing else changed."""
 
 import os
 from pathlib import Path
@@ -24,7 +24,7 @@ def relight(afterlight):
 
 
 def updated(scene, path):
-    """The picture after the operator, as a person would save it."""
+    """The image after the operator, as a person would save it."""
     assert bpy.ops.afterlight.update() == {"FINISHED"}
     set_format(scene)
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)
@@ -41,7 +41,7 @@ def test_an_update_is_a_fresh_render_without_eevee(scene, tmp_path, kind):
     expected = read_rgb(render(scene, tmp_path / "expected.exr"))
     scene.afterlight.start, scene.afterlight.samples, scene.afterlight.strength = "HALF", 256, 1
     lamp = bpy.data.objects["Lamp"]
-    lamp.location.x -= 1  # EEVEE would show it
+    lamp.location.x -= 1  # EEVEE would render it
     before = written_down()
     assert np.array_equal(updated(scene, tmp_path / "again.exr"), first)
     scene.afterlight.start, scene.afterlight.samples, scene.afterlight.strength = "FULL", 64, 2
@@ -55,7 +55,7 @@ def test_an_update_is_a_fresh_render_without_eevee(scene, tmp_path, kind):
 
 
 def test_every_pass_comes_back(scene, tmp_path):
-    """All that EEVEE can render, data passes and cryptomatte among them, to the bit and in the same order."""
+    """All passes that EEVEE can render, data passes and Cryptomatte included, bit for bit and in the same order."""
     layer = scene.view_layers[0]
     for prop in layer.bl_rna.properties:
         if prop.identifier.startswith("use_pass_") and prop.type == "BOOLEAN":
@@ -123,7 +123,7 @@ def test_one_file_is_kept_and_freed(scene, relight, tmp_path):
 
 
 def test_an_animation_keeps_its_last_frame(scene, relight, tmp_path):
-    """Lit again with the camera and the noise of that frame, wherever the playhead is."""
+    """It is lit again with the camera and the noise of that frame, wherever the playhead is."""
     scene.frame_end, scene.afterlight.use_animated_seed, scene.afterlight.samples = 2, True, 16
     for frame, place in ((1, 0), (2, 0.3)):
         scene.camera.location.x = place
@@ -211,7 +211,7 @@ def a_bug(relight, monkeypatch):
     "trouble, words", [(gone, "could not be read back"), (cut_short, "could not be read back"), (a_bug, "no such pass")]
 )
 def test_passes_that_cannot_be_handed_back(scene, relight, tmp_path, monkeypatch, capfd, trouble, words):
-    """After the operator has looked whether they are there."""
+    """They are removed after the operator has checked that they exist."""
     render(scene, tmp_path / "first.exr")
     monkeypatch.setattr(relight, "obstacle", lambda scene: "")
     trouble(relight, monkeypatch)

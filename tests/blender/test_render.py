@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""F12 and -a, end to end from the installed zip: what comes out, and that everything is as before once unticked."""
+"""F12 and -a, end to end from the installed zip: what they render, and that disabling leaves everything as before."""
 
 from pathlib import Path
 
@@ -32,8 +32,8 @@ def scene(fresh):
 
 @pytest.fixture
 def unchanged():
-    """Call it before and after: the file must hold the same, but for where the last picture went and what Blender
-    itself keeps of a render (the images Render Result and Viewer Node)."""
+    """Call it before and after: the file must hold the same data, except for the path of the last image and what
+    Blender itself keeps of a render (the images Render Result and Viewer Node)."""
     states = []
 
     def check():
@@ -48,7 +48,8 @@ def unchanged():
 
 @pytest.fixture
 def seen(afterlight, monkeypatch):
-    """What the engine gave to the gather, one entry a view layer and frame: (passes, camera, Position pass)."""
+    """What the engine passed to the gather, one entry for each view layer and frame: (passes, camera, Position
+    pass)."""
     import OpenEXR
 
     engine, found, positions = afterlight.addon.render.engine, [], []
@@ -79,7 +80,7 @@ def seen(afterlight, monkeypatch):
 
 
 def lit_and_plain(scene, folder):
-    """Pictures with and without our light, as (H, W, 3), rows top first."""
+    """Images with and without our light, (H, W, 3), top row first."""
     plain = read_rgb(render(scene, folder / "plain.exr"))
     scene.afterlight.enabled = True
     lit = read_rgb(render(scene, folder / "lit.exr"))
@@ -117,7 +118,7 @@ def test_the_indirect_light_is_a_pass_and_the_picture_is_the_sum(scene, tmp_path
 
 
 def test_both_of_blenders_compositors_add_it(scene, tmp_path):
-    """GPU is Blender's default. No other test uses it: see scenes.box()."""
+    """The GPU compositor is Blender's default. No other test uses it: see scenes.box()."""
     scene.afterlight.enabled = True
     on_cpu = read_rgb(render(scene, tmp_path / "cpu.exr"))
     scene.render.compositor_device = "GPU"
@@ -234,7 +235,7 @@ def test_render_border(scene, tmp_path, unchanged, seen, crop):
 
 
 def places_agree(seen, tolerance=2e-3):
-    """The gather's idea of where each pixel is in the world, against EEVEE's own Position pass."""
+    """Compare the gather's world position of each pixel with EEVEE's own Position pass."""
     assert seen
     for passes, camera, position in seen:
         height, width = passes.depth.shape
@@ -332,7 +333,7 @@ def test_emission_lights_the_room(scene, tmp_path):
 
 
 def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monkeypatch):
-    """Where they lie, from a file laid out as save() has it; by OpenEXR from any other, which also finds the damage."""
+    """Mapped from a file in save()'s layout; read by OpenEXR from any other, which also finds the damage."""
     import OpenEXR
 
     passes, reader, read_by_openexr = afterlight.addon.scene.passes, OpenEXR.File, []
@@ -385,7 +386,7 @@ def test_passes_are_read_alike_from_any_layout(scene, tmp_path, afterlight, monk
 
 
 def test_no_file_is_left_in_the_temporary_folder(scene, tmp_path):
-    """But for the passes of the last frame, until they are freed."""
+    """Except for the passes of the last frame, until they are freed."""
     layered_tree(scene)
     scene.afterlight.enabled = True
 

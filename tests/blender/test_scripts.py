@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scripts that tick, untick and set Indirect Light in the middle of a render: each frame is lit or plain, with a word,
-and Blender lives."""
+"""Scripts that tick, untick and set Indirect Light during a render: each frame is lit or plain, with a message, and
+Blender doesn't crash."""
 
 import json
 import os
@@ -27,7 +27,7 @@ CASES = (
     ("render_pre", "radiosity", ""),
 )
 
-# In a process of its own: 0.3.0 crashed it. Prints, by case, what each frame was and what was said.
+# Runs in a process of its own, since 0.3.0 crashed. Prints, for each case, the mean of each frame and the messages.
 SCRIPT = """
 import json, os, sys, threading
 import bpy, scenes
@@ -84,7 +84,7 @@ for number, (event, name, how) in enumerate(json.loads(sys.argv[3])):
     helpers = [each.name for each in bpy.data.scenes if each.afterlight.role]
     warned = module.host.report.warnings(scene)
     print("case", json.dumps([event, change.__name__, means, scene.afterlight.report, warned,
-                              scene.afterlight.enabled, len(helpers), list(module.compositor.setup.faults(scene))
+                              scene.afterlight.enabled, len(helpers), list(module.compositor.faults.find(scene))
                               if scene.afterlight.enabled else []]), flush=True)
     scene.camera.animation_data_clear()
     bpy.app.driver_namespace.pop("change", None)
@@ -93,7 +93,7 @@ for number, (event, name, how) in enumerate(json.loads(sys.argv[3])):
 
 @pytest.fixture(scope="module")
 def outcome(afterlight, tmp_path_factory):
-    """(plain mean, lit mean), and by (event, change) what came of it."""
+    """(plain mean, lit mean), and the result of each (event, change)."""
     folder = tmp_path_factory.mktemp("scripts")
     command = [sys.executable, "-X", "faulthandler", "-c", SCRIPT, afterlight.__name__, str(folder), json.dumps(CASES)]
     run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(TESTS)})
@@ -111,7 +111,7 @@ def outcome(afterlight, tmp_path_factory):
 
 @pytest.mark.parametrize("case", [case[:2] for case in CASES], ids=" ".join)
 def test_frames_are_lit_or_plain(outcome, case):
-    """Faults 9: six of eight of these crashed Blender at the second frame."""
+    """Six of eight of these used to crash Blender at the second frame."""
     (plain, lit), cases = outcome
     means, report, warnings, enabled, helpers, faults = cases[case]
     assert lit > 1.1 * plain
@@ -123,7 +123,7 @@ def test_frames_are_lit_or_plain(outcome, case):
 
 
 def test_what_waits_is_said_and_done(fresh, afterlight):
-    """The end of a render sets up what was ticked meanwhile; another file does not."""
+    """When the render ends, scenes that were ticked during it are set up; loading another file forgets them."""
     scene, addon = box(fresh), afterlight.addon
     addon.host.render_lock.begin()
     addon.host.render_lock.lock()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temporary files: a folder that nobody can guess, what a killed Blender left, and never a file of anybody else's."""
+"""Temporary files: an unguessable folder, removing what a killed Blender left, and never anybody else's file."""
 
 import os
 import stat
@@ -45,14 +45,14 @@ def temp_files(afterlight):
 
 @pytest.fixture(params=["by descriptor", "by path"])
 def elsewhere(temp_files, monkeypatch, tmp_path, request):
-    """As if Blender's temporary folder lay in tmp_path; with and without what POSIX has."""
+    """Pretend that Blender's temporary folder is in tmp_path; with and without POSIX features."""
     if request.param == "by path":
         monkeypatch.setattr(temp_files, "BY_DESCRIPTOR", False)
     base = tmp_path / "base"
     (base / "blender_own").mkdir(parents=True)
     move(temp_files, monkeypatch, base / "blender_own")
     monkeypatch.setattr(temp_files, "_folders", [])
-    monkeypatch.setattr(temp_files, "LONGEST", 10)
+    monkeypatch.setattr(temp_files, "MAX_SEARCH_SECONDS", 10)
     yield base
     temp_files.release()
 
@@ -72,7 +72,7 @@ def folder_of_a_dead_blender(base, name="blender_dead/afterlight_dead", files=("
 
 
 def restart(afterlight):
-    """What a start of Blender does to the extension."""
+    """Do what a start of Blender does to the extension."""
     bpy.ops.preferences.addon_disable(module=afterlight.__name__)
     bpy.ops.preferences.addon_enable(module=afterlight.__name__)
 
@@ -139,7 +139,7 @@ def test_only_files_of_ours_are_removed(temp_files, elsewhere, tmp_path):
 
 
 def test_a_folder_that_went_is_made_anew(temp_files, elsewhere, monkeypatch):
-    """A cleaner of the system's empties the temporary folder, or another is chosen in the preferences."""
+    """The system cleans the temporary folder, or another one is set in the preferences."""
     first = Path(temp_files.new(7))
     first.touch()
     (first.parent / ".lock").unlink()
@@ -183,18 +183,18 @@ def test_blenders_folder_goes_only_where_it_is_blenders_and_empty(temp_files, el
     session = elsewhere / "blender_own"
     (session / "quit.blend").touch()
     temp_files.new(7)
-    temp_files.leave()
+    temp_files.release_at_exit()
     assert [each.name for each in session.iterdir()] == ["quit.blend"]
     (session / "quit.blend").unlink()
-    temp_files.leave()
+    temp_files.release_at_exit()
     assert not session.exists()
-    move(temp_files, monkeypatch, elsewhere)  # as where Blender could not make one
+    move(temp_files, monkeypatch, elsewhere)  # as if Blender could not make one
     Path(temp_files.new(7)).touch()
-    temp_files.leave()
+    temp_files.release_at_exit()
     assert elsewhere.exists() and not list(elsewhere.iterdir())
 
 
-# What killed Blenders left
+# What killed Blender processes left
 
 
 @pytest.mark.parametrize("name", ["blender_dead/afterlight_dead", "afterlight_dead"])
@@ -247,7 +247,7 @@ def test_leftovers_of_version_0_3_0_stay(temp_files, elsewhere):
 
 
 def test_the_living_keep_their_files_until_they_end(temp_files, elsewhere):
-    """Many at once, as on a farm; one that is over without a word is as dead as one that was killed."""
+    """Many processes at once, as on a farm; one that exits silently counts the same as one that was killed."""
     told, tell = os.pipe()
     child = os.fork()
     if child == 0:
@@ -273,12 +273,12 @@ def test_the_own_folder_is_not_cleared(temp_files, elsewhere):
 
 
 def test_without_locks_nothing_is_cleared(temp_files, elsewhere, monkeypatch):
-    """Some network file systems have none."""
+    """Some network file systems have no locks."""
 
     def no_locks(_):
         raise OSError("No locks available")
 
-    monkeypatch.setattr(temp_files, "_take", no_locks)
+    monkeypatch.setattr(temp_files, "_acquire", no_locks)
     path, other = Path(temp_files.new(1)), folder_of_a_dead_blender(elsewhere)
     assert not list(path.parent.iterdir()) and temp_files.new(1) == str(path)
     temp_files.clear()
@@ -302,7 +302,7 @@ def a_link(folder):
 
 @pytest.mark.parametrize("trap", [a_pipe, a_folder, a_link])
 def test_traps_in_the_place_of_a_lock(temp_files, elsewhere, trap):
-    """Anybody may make a folder in /tmp."""
+    """Anybody may create a folder in /tmp."""
     folder = folder_of_a_dead_blender(elsewhere, lock=False)
     trap(folder)
     temp_files.clear()
@@ -311,7 +311,7 @@ def test_traps_in_the_place_of_a_lock(temp_files, elsewhere, trap):
 
 @pytest.mark.parametrize("trap", [a_pipe, a_link])
 def test_traps_that_are_set_after_the_look(temp_files, elsewhere, monkeypatch, trap):
-    """A pipe that nobody writes to would hold Blender up for ever."""
+    """Opening a pipe that nobody writes to would block Blender for ever."""
     is_file = temp_files._Folder.is_file
     monkeypatch.setattr(temp_files._Folder, "is_file", lambda folder, name: name == ".lock" or is_file(folder, name))
     test_traps_in_the_place_of_a_lock(temp_files, elsewhere, trap)
@@ -338,7 +338,7 @@ def test_another_users_folder_stays(temp_files, elsewhere, owned):
 
 @pytest.mark.parametrize("refused", ["open", "lstat", "listdir", "unlink", "rmdir"])
 def test_what_cannot_be_read_or_removed_is_left(temp_files, elsewhere, monkeypatch, refused):
-    """Another user's folders. Tests may run as root, who is refused nothing."""
+    """Another user's folders. Tests may run as root, who may do anything."""
     folder_of_a_dead_blender(elsewhere)
 
     def refuse(*_, **__):
@@ -357,7 +357,7 @@ def test_a_temporary_folder_that_is_gone(temp_files, elsewhere, monkeypatch):
 
 def test_it_is_quick_and_gets_everywhere(temp_files, elsewhere, monkeypatch):
     """With the folders of years of crashes."""
-    monkeypatch.setattr(temp_files, "LONGEST", 0.005)
+    monkeypatch.setattr(temp_files, "MAX_SEARCH_SECONDS", 0.005)
     for number in range(2000):
         folder_of_a_dead_blender(elsewhere, f"blender_{number}/afterlight_{number}", files=(), lock=False)
     folder = folder_of_a_dead_blender(elsewhere)

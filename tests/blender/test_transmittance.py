@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light through volumes and Blended materials: as much of the bounce as of the surface itself, and nothing else
-changes."""
+"""Light through volumes and Blended materials: the bounced light is attenuated like the surface itself, and nothing
+else changes."""
 
 from math import radians
 from types import SimpleNamespace
@@ -19,17 +19,18 @@ def addon(afterlight):
 
 @pytest.fixture
 def share(addon):
-    return addon.scene.transmittance.through
+    return addon.scene.transmittance.transmitted_share
 
 
-# The formula, on arrays of which all is known
+# The formula, on arrays with a known result
 
 HEIGHT, WIDTH, CELL = 48, 64, 8
 DEPTH = np.broadcast_to(np.linspace(2, 6, WIDTH), (HEIGHT, WIDTH)).astype(np.float32)
 
 
 def known(through, surface, volume=0.0, blended=0.0, opacity=0.0):
-    """Arguments of through(): passes of half precision, as EEVEE's are, of what is known of each pixel."""
+    """Arguments of transmitted_share(): passes in half precision, as EEVEE's are, and the true transmittance of each
+    pixel."""
 
     def plane(value, *channels):
         return (
@@ -62,7 +63,7 @@ def test_a_black_volume_lets_nothing_through(share):
 
 @pytest.mark.parametrize("blurred", [False, True])
 def test_shadow_is_filled_by_distance(share, blurred):
-    """Fog, of which a quarter of the picture has nothing to divide by."""
+    """Fog, with a quarter of the image too dark for division."""
     through = np.exp(-0.4 * DEPTH)[..., None] * np.ones(3)
     surface = np.full((HEIGHT, WIDTH, 3), 0.3)
     surface[24:, 16:48] = 0
@@ -71,7 +72,7 @@ def test_shadow_is_filled_by_distance(share, blurred):
 
 
 def test_dark_things_before_the_smoke_keep_their_light(share):
-    """A volume behind: what is near is filled from what is near."""
+    """A volume behind them: near pixels are filled from near ones."""
     near = np.zeros((HEIGHT, WIDTH), bool)
     near[30:] = True
     depth = np.where(near, 1.0, 5.0).astype(np.float32)
@@ -92,13 +93,13 @@ def test_a_blended_material_is_its_opacity_in_the_dark(share):
 
 
 def test_fog_behind_a_blended_card(share):
-    """What the card shows of the fog is in the pass Transparent, and of the fog behind it in Volume Direct."""
+    """The fog in front of the card is part of the pass Transparent, the fog behind it is in Volume Direct."""
     found = share(*known(0.5 * 0.3, 0.4, volume=0.2, blended=0.1, opacity=0.5))
     np.testing.assert_allclose(found, 0.15, atol=2e-3)
 
 
 def test_blur_is_told_by_many_pixels(share):
-    """Combined alone is blurred: the shares of its pixels are wrong one by one, but not that of all."""
+    """Only Combined is blurred: the shares of single pixels are wrong, but not that of all."""
     surface = np.where(np.arange(WIDTH) % 16 < 8, 0.6, 0.1)[None, :, None] * np.ones((HEIGHT, 1, 3))
     args = list(known(0.5, surface))
     args[0] = np.mean([np.roll(args[0], by, 1) for by in range(-2, 3)], 0)
@@ -118,7 +119,7 @@ def test_broken_pixels_stay_by_themselves(addon, share, value):
     np.testing.assert_allclose(found[20:, 20:], 0.5, atol=0.02)
 
 
-# What a scene has
+# Detecting media in a scene
 
 
 def volume(tree, kind="ShaderNodeVolumeAbsorption", density=1.0, color=(0, 0, 0)):
@@ -226,7 +227,7 @@ def test_passes_follow_the_materials(fresh, addon):
     addon.compositor.setup.follow(scene)
     assert not any(map(layer.path_resolve, EXTRA))
     wall(cloud(), (0, 0, 0), (0, 0, 0))
-    assert not addon.compositor.setup.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     addon.render.handlers.before_render(scene)  # nothing else tells of an edited material
     addon.render.handlers.after_render()
     assert all(map(layer.path_resolve, EXTRA))
@@ -244,7 +245,7 @@ def room(scene):
 
 
 def beam(scene):
-    """The lamp shines at the red wall alone: all else is dark but for its bounce."""
+    """The lamp lights only the red wall: everything else is dark except for its bounce."""
     scene = room(scene)
     lamp = bpy.data.objects["Lamp"]
     lamp.data.type = "SPOT"
@@ -263,7 +264,7 @@ def card_at(material, place):
 
 
 def at(place):
-    """The pixels of a card's middle."""
+    """The pixels at the middle of a card."""
     scale = 64 / (2 * 0.75 * 5.3)
     row, column = round(18 - place[1] * scale), round(32 + place[0] * scale)
     return np.s_[row - 2 : row + 2, column - 2 : column + 2]
@@ -295,7 +296,7 @@ def black_cube(scene):
 
 
 def stroke(scene):
-    """Black ink over the middle of the picture."""
+    """Black ink over the middle of the image."""
     strokes = bpy.data.grease_pencils.new("Strokes")
     drawing = strokes.layers.new("Ink").frames.new(1).drawing
     drawing.add_strokes([2])
@@ -331,7 +332,7 @@ PICTURES = {
 
 @pytest.fixture
 def pictures(fresh, addon, tmp_path, monkeypatch):
-    """What a render of one of PICTURES made: lit, plain and light (H, W, 3), rows top first, and surface, EEVEE's S."""
+    """The render of one of PICTURES: lit, plain and light, (H, W, 3), top row first; and surface, EEVEE's S."""
 
     def made(name):
         if name not in _made:
@@ -409,8 +410,7 @@ PARTS = MIDDLE, np.s_[10:14, 22:42], np.s_[22:26, 22:42]
 
 
 def test_fog_takes_of_the_bounce_as_of_the_surface(pictures):
-    """Of fog that sends no light of its own, as much and as little as it takes of the plain picture, in each
-    channel."""
+    """Fog that emits no light attenuates the bounce as much as the plain image, in each channel."""
     found, bare = pictures("mist"), pictures("bare")
     for part in PARTS:
         taken = found.plain[part].mean((0, 1)) / bare.plain[part].mean((0, 1))

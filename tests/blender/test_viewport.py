@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of the light in viewports needs no window: which edits it follows, through which cameras it sees, and that it
-is off unless asked for. tests/desktop/test_viewport.py has the rest."""
+"""The light in viewports, as far as it needs no window: which edits it follows, through which cameras it sees, and that
+it is off unless enabled. tests/desktop/test_viewport.py tests the rest."""
 
 from importlib import import_module
 
@@ -11,17 +11,17 @@ from mathutils import Matrix
 
 
 @pytest.fixture
-def stamps(addon, scene):
-    """A function that tells of which kinds something has changed since it was last called."""
-    changes = import_module(f"{addon.__name__}.viewport.scene_changes")
+def changes(addon, scene):
+    """A function that returns which kinds of change have happened since its last call."""
+    scene_changes = import_module(f"{addon.__name__}.viewport.scene_changes")
     scene.afterlight.enabled = scene.afterlight.use_viewport = True
     bpy.context.view_layer.update()
-    before = [changes.stamps(scene)]
+    before = [scene_changes.change_counts(scene)]
 
     def changed():
         bpy.context.view_layer.update()
-        now = changes.stamps(scene)
-        found = {kind for kind in ("lamps", "shapes") if getattr(now, kind) != getattr(before[0], kind)}
+        now = scene_changes.change_counts(scene)
+        found = {kind for kind in ("lights", "geometry") if getattr(now, kind) != getattr(before[0], kind)}
         before[0] = now
         return found
 
@@ -82,33 +82,33 @@ def strength_is_set(scene):
 @pytest.mark.parametrize(
     "edit, kinds",
     [
-        (lamp_moves, {"lamps"}),
-        (lamp_brightens, {"lamps"}),
-        (wall_moves, {"shapes"}),
-        (material_changes, {"shapes"}),
-        (wall_is_hidden, {"shapes"}),
-        (wall_is_removed, {"shapes"}),
-        (both_move, {"shapes"}),
-        (eevee_is_set, {"shapes"}),
-        (frame_changes, {"shapes"}),
+        (lamp_moves, {"lights"}),
+        (lamp_brightens, {"lights"}),
+        (wall_moves, {"geometry"}),
+        (material_changes, {"geometry"}),
+        (wall_is_hidden, {"geometry"}),
+        (wall_is_removed, {"geometry"}),
+        (both_move, {"geometry"}),
+        (eevee_is_set, {"geometry"}),
+        (frame_changes, {"geometry"}),
         (wall_is_selected, set()),
         (strength_is_set, set()),
     ],
 )
-def test_edits_are_told_apart(scene, stamps, edit, kinds):
+def test_edits_are_told_apart(scene, changes, edit, kinds):
     edit(scene)
-    assert stamps() == kinds
+    assert changes() == kinds
 
 
-def test_a_new_world_is_followed(scene, stamps):
+def test_a_new_world_is_followed(scene, changes):
     world_is_given(scene)
-    assert stamps()
+    assert changes()
 
 
-def test_where_no_viewport_is_lit_nothing_is_followed(scene, stamps):
+def test_where_no_viewport_is_lit_nothing_is_followed(scene, changes):
     scene.afterlight.use_viewport = False
     wall_moves(scene)
-    assert stamps() == set()
+    assert changes() == set()
 
 
 def test_a_viewport_is_lit_where_all_is_asked_for(scene, addon):
@@ -135,9 +135,9 @@ def test_a_viewport_is_lit_where_all_is_asked_for(scene, addon):
 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 def test_matrices_see_what_cameras_see(scene, addon, kind):
-    """camera_of() a camera's matrices is cameras.camera(), and window_matrix() of a lens is the same again, where the
-    frame is a square."""
-    eevee, lenses, passes = (
+    """camera_of() a camera's matrices equals cameras.camera(), and so does window_matrix() of its lens if the frame is
+    square."""
+    offscreen, view_cameras, passes = (
         import_module(f"{addon.__name__}.{name}")
         for name in ("viewport.offscreen", "scene.view_cameras", "scene.passes")
     )
@@ -149,12 +149,12 @@ def test_matrices_see_what_cameras_see(scene, addon, kind):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     evaluated = camera.evaluated_get(depsgraph)
     exact = addon.scene.cameras.camera_at(evaluated.matrix_world, evaluated, depsgraph, (0, 0), (48, 48), (1.0, 1.0))
-    lens = lenses.lens_of(evaluated, depsgraph, scene)
+    lens = view_cameras.lens_of(evaluated, depsgraph, scene)
     for window in (
         evaluated.calc_matrix_camera(depsgraph, x=48, y=48),
-        Matrix(lenses.window_matrix(lens, scene).tolist()),
+        Matrix(view_cameras.window_matrix(lens, scene).tolist()),
     ):
-        found = eevee.camera_of(evaluated.matrix_world.inverted(), window, (48, 48))
+        found = offscreen.camera_of(evaluated.matrix_world.inverted(), window, (48, 48))
         assert found.orthographic == exact.orthographic == (kind == "ORTHO")
         for name in ("rotation", "scale", "offset", "position"):
             np.testing.assert_allclose(getattr(found, name), getattr(exact, name), atol=1e-5, err_msg=name)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Further views: their scenes come and go with the settings, and what EEVEE saw through them is where it says it is."""
+"""The further views: their scenes appear and go with the settings, and EEVEE's passes of them are where their cameras
+say. test_placement.py tests where they are placed."""
 
 from pathlib import Path
 
@@ -23,13 +24,8 @@ def views(afterlight):
 
 
 @pytest.fixture
-def wiring(afterlight):
-    return afterlight.addon.compositor.setup
-
-
-@pytest.fixture
 def seen(afterlight, monkeypatch):
-    """[(light.Passes, light.Camera, Position pass)] of the views, as the engine of the light gets them."""
+    """[(gather.Passes, gather.Camera, Position pass)] of the views, as the engine passes them to the gather."""
 
     class Seen(list):
         def clear(self):
@@ -66,7 +62,7 @@ def side_camera(location=(1.5, 1.5, 1), rotation=(60, 0, 140), **lens):
 
 
 def positions(passes, camera):
-    """(H, W, 3) world positions, rows top first, of depth seen through a light.Camera."""
+    """(H, W, 3) world positions, top row first, of depth seen through a gather.Camera."""
     height, width = passes.depth.shape
     i, j = np.meshgrid(np.arange(width) + 0.5, height - np.arange(height) - 0.5)
     ray = camera.offset + camera.scale * np.stack([i, j], -1)
@@ -111,11 +107,11 @@ def test_a_render_border_leaves_views_whole(scene, views, seen, tmp_path, crop):
     assert np.allclose(corners, [(-1, -1), (1, 1)], atol=1e-5)  # 90 degrees along either side
 
 
-# What comes and goes with the settings
+# Scenes and nodes that follow the settings
 
 
 def kinds(scene):
-    """The marks of our nodes at the top level, in the order in which Blender renders their scenes."""
+    """The roles of our nodes at the top level, in the order in which Blender renders their scenes."""
     return [
         node.scene.afterlight.role.lower()
         for node in scene.compositing_node_group.nodes
@@ -124,23 +120,23 @@ def kinds(scene):
 
 
 @pytest.mark.parametrize("kind", TREES)
-def test_unticking_with_views_leaves_the_file_as_it_was(scene, wiring, kind):
+def test_unticking_with_views_leaves_the_file_as_it_was(scene, addon, kind):
     TREES[kind](scene)
     scene.afterlight.views, scene.afterlight.view_count = "AUTOMATIC", 3
     before = written_down()
     scene.afterlight.enabled = True
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert kinds(scene)[:4] == ["scout", "view", "view", "view"] and set(kinds(scene)[4:]) == {"helper"}
     once = written_down()
-    wiring.connect(scene)
-    wiring.follow(scene)
+    addon.compositor.setup.connect(scene)
+    addon.compositor.setup.follow(scene)
     assert not differences(once, written_down())
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
 
 @pytest.mark.parametrize("kind", TREES)
-def test_views_that_come_later_are_rendered_before_the_light(scene, wiring, kind):
+def test_views_that_come_later_are_rendered_before_the_light(scene, addon, kind):
     TREES[kind](scene)
     scene.afterlight.enabled = True
     tree = scene.compositing_node_group
@@ -151,7 +147,7 @@ def test_views_that_come_later_are_rendered_before_the_light(scene, wiring, kind
     )
     before = written_down()
     scene.afterlight.views = "AUTOMATIC"
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     made = tree.nodes[name]
     assert (tuple(made.location), made.label) == ((7, 8), "Mine")
     assert (
@@ -169,35 +165,35 @@ def test_views_that_come_later_are_rendered_before_the_light(scene, wiring, kind
     assert not differences(before, after)
 
 
-def test_the_number_of_views_is_followed(scene, wiring, views):
+def test_the_number_of_views_is_followed(scene, addon, views):
     scene.afterlight.enabled = True
     scene.afterlight.views = "AUTOMATIC"
     for count in (2, 9, 1):
         scene.afterlight.view_count = count
         assert len(views.scenes(scene)) == count and kinds(scene).count("view") == count
-        assert not wiring.faults(scene)
+        assert not addon.compositor.faults.find(scene)
     by_hand(scene, side_camera(), side_camera())
     assert len(views.scenes(scene)) == 2
     scene.name = "Shot 7"
-    wiring.follow(scene)
+    addon.compositor.setup.follow(scene)
     assert [view.name for view in views.scenes(scene)] == [".Afterlight View 1 (Shot 7)", ".Afterlight View 2 (Shot 7)"]
 
 
 @pytest.mark.parametrize("how", ["LINK_COPY", "FULL_COPY"])
 @pytest.mark.parametrize("kind", ["none", "layered"])
-def test_a_copied_scene_gets_views_of_its_own(scene, wiring, views, how, kind):
+def test_a_copied_scene_gets_views_of_its_own(scene, addon, views, how, kind):
     TREES[kind](scene)
     scene.afterlight.view_count = 2
     scene.afterlight.views = "AUTOMATIC"
     scene.afterlight.enabled = True
     bpy.ops.scene.new(type=how)
     copy = bpy.context.scene
-    wiring.follow(copy)
-    assert not wiring.faults(scene) and not wiring.faults(copy)
+    addon.compositor.setup.follow(copy)
+    assert not addon.compositor.faults.find(scene) and not addon.compositor.faults.find(copy)
     assert len(views.scenes(copy)) == 2 and not set(views.scenes(copy)) & set(views.scenes(scene))
     assert all(view.background_set == copy for view in views.scenes(copy))
     copy.afterlight.enabled = False
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert not [each for each in bpy.data.scenes if each.afterlight.role]
     assert not [each for each in bpy.data.cameras if each.name.startswith(".Afterlight")]
@@ -207,16 +203,16 @@ def nodes_show(node, view):
     return node.bl_idname == "CompositorNodeRLayers" and node.scene == view
 
 
-def test_deleted_view_scenes_and_nodes_are_noticed_and_repaired(scene, wiring, views):
+def test_deleted_view_scenes_and_nodes_are_noticed_and_repaired(scene, addon, views):
     scene.afterlight.enabled = True
     scene.afterlight.views = "AUTOMATIC"
     tree = scene.compositing_node_group
     tree.nodes.remove(next(node for node in tree.nodes if nodes_show(node, views.scenes(scene)[2])))
     bpy.data.scenes.remove(views.scenes(scene)[1])
-    wiring.follow(scene)
-    assert wiring.faults(scene)
+    addon.compositor.setup.follow(scene)
+    assert addon.compositor.faults.find(scene)
     bpy.ops.afterlight.repair()
-    assert not wiring.faults(scene) and len(views.scenes(scene)) == 7
+    assert not addon.compositor.faults.find(scene) and len(views.scenes(scene)) == 7
 
 
 def test_deleting_the_scene_takes_its_views_along(scene, tmp_path):
@@ -228,172 +224,16 @@ def test_deleting_the_scene_takes_its_views_along(scene, tmp_path):
     assert [each.name for each in bpy.data.scenes] == ["Other"]
 
 
-# Placing them
-
-
 @pytest.fixture
-def placing(afterlight):
+def placement(afterlight):
     return afterlight.addon.views.placement
-
-
-def room(*boxes):
-    """cast() for the inside of the first box, (low, high), and the outside of the others."""
-    boxes = [np.array(box, float) for box in boxes]
-
-    def cast(origins, directions, limits, nearest=True):
-        best, normal = np.full(len(origins), np.inf), np.zeros((len(origins), 3))
-        for index, (low, high) in enumerate(boxes):
-            with np.errstate(divide="ignore", invalid="ignore"):
-                sides = np.stack([(low - origins) / directions, (high - origins) / directions])
-            enter, leave = np.fmin(*sides), np.fmax(*sides)
-            if index:
-                axis, far = enter.argmax(1), enter.max(1)
-                hit = (far <= leave.min(1)) & (far > 0)
-            else:
-                axis, far = leave.argmin(1), leave.min(1)
-                hit = far > 0
-            hit &= (far <= limits) & (far < best)
-            best[hit] = far[hit]
-            normal[hit] = np.eye(3)[axis[hit]]
-        return best, normal, np.zeros(len(origins), int)
-
-    return cast
-
-
-def floor(low, high, count=1000):
-    """Pixels of a picture that shows the middle of the floor of a room: (places, normals, albedo)."""
-    across = np.linspace(0.4, 0.6, int(count**0.5))
-    x, y = np.meshgrid(*[low[axis] + across * (high[axis] - low[axis]) for axis in (0, 1)])
-    places = np.stack([x.ravel(), y.ravel(), np.full(x.size, low[2])], -1)
-    up = np.tile((0.0, 0, 1), (len(places), 1))
-    return places + 1e-4 * (high[2] - low[2]) * up, up, np.full(len(places), 0.8)
-
-
-def evenly(places, _normals, _things):
-    return np.ones(len(places)), np.full(len(places), 0.5), np.zeros(len(places))
-
-
-@pytest.mark.parametrize("scale", [1e-3, 1, 1e4])
-def test_views_see_nearly_all_that_lights_the_picture_at_any_scale(placing, scale):
-    low, high = np.array((-2, -3, 0)) * scale, np.array((2, 3, 2.5)) * scale
-    pillar = np.array((0.9, -3, 0)) * scale, np.array((1.2, 2, 2.5)) * scale  # a corner behind it
-    cast, rng = room((low, high), pillar), np.random.default_rng(0)
-    light = placing.bounces(*floor(low, high), cast, evenly, rng)
-    assert abs(light.weights.sum() - 1) < 1e-9
-    unseen = np.zeros(len(light.places), bool)
-    half = np.tan(np.radians(50)) * np.array((1, 9 / 16))
-    poses = placing.place(light, unseen, cast, half, 7, rng)
-    coverage = placing.covered(light, unseen, cast, half, poses)
-    assert coverage[0] == 0 and coverage[-1] > 0.97 and 2 <= len(poses) <= 7
-    clearance = placing.CLEARANCE * light.size
-    for pose in poses:
-        assert np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3)) and np.linalg.det(pose[:3, :3]) > 0
-        assert np.all(pose[:3, 3] - low > clearance) and np.all(high - pose[:3, 3] > clearance)
-    again = np.random.default_rng(0)
-    same = placing.place(placing.bounces(*floor(low, high), cast, evenly, again), unseen, cast, half, 7, again)
-    assert np.array_equal(same, poses)
-
-
-def test_views_taken_back_and_set_anew_see_more(placing, monkeypatch):
-    """The first that are chosen see most by themselves; beside the later ones others may see more."""
-    low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
-    pillar = np.array((0.9, -3, 0)), np.array((1.2, 2, 2.5))
-    cast, half = room((low, high), pillar), np.tan(np.radians(30)) * np.array((1, 9 / 16))
-    light = placing.bounces(*floor(low, high), cast, evenly, np.random.default_rng(0))
-    unseen, gains = np.zeros(len(light.places), bool), []
-    for seed in range(4):
-        shares = []
-        for rounds in (0, 3):
-            monkeypatch.setattr(placing, "ROUNDS", rounds)
-            poses = placing.place(light, unseen, cast, half, 4, np.random.default_rng(seed))
-            seen = [placing.sees(pose, half, light, placing.visible(pose[:3, 3], light, cast)) for pose in poses]
-            shares.append(light.weights @ np.any(seen, 0))
-        gains.append(shares[1] - shares[0])
-    assert min(gains) > -0.001 and max(gains) > 0.003, gains
-
-
-def test_what_is_seen_along_it_is_not_seen(placing):
-    """The first bounce lost up to 12 % of a white box's light where a view stood a hand's breadth off one of its
-    walls."""
-    low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
-    cast = room((low, high))
-    light = placing.bounces(*floor(low, high), cast, evenly, np.random.default_rng(0))
-    low_down = placing.visible(np.array((0, 0, 0.02)), light, cast)
-    near, floor_places = np.linalg.norm(light.places[:, :2], axis=1) < 0.15, light.places[:, 2] < 1e-6
-    assert low_down[floor_places & near].any()
-    assert not low_down[floor_places & ~near & (np.linalg.norm(light.places[:, :2], axis=1) > 0.25)].any()
-    assert low_down[~floor_places].mean() > 0.9
-
-
-def test_views_look_where_the_light_comes_from(placing):
-    """Only one wall is lit: the first view must look at it."""
-    low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
-
-    def one_wall(places, normals, things):
-        return np.where(places[:, 0] > 1.999, 100.0, 0), np.full(len(places), 0.5), np.zeros(len(places))
-
-    cast, rng = room((low, high)), np.random.default_rng(1)
-    light = placing.bounces(*floor(low, high), cast, one_wall, rng)
-    poses = placing.place(light, np.zeros(len(light.places), bool), cast, (1.2, 0.7), 1, rng)
-    assert -poses[0][0, 2] > 0.5
-
-
-def test_light_arrives_only_by_way_of_what_is_seen(placing):
-    """A wall that sends 40 % itself, and hands on 60 % from one behind a corner: by itself the far one brings
-    nothing."""
-    points = np.zeros((2, 3))
-    light = placing.Bounces(
-        points, points, points, np.array((-1, 0)), np.array((0.4, 0.6)), np.array((1.0, 0.6)) / 1.6, 1.0
-    )
-    arrived = [light.arrives(np.array(seen)) for seen in ((True, True), (True, False), (False, True), (False, False))]
-    assert arrived == pytest.approx([1, 0.4, 0, 0])
-
-
-def test_views_go_where_light_comes_from_round_a_corner(placing):
-    """Only a wall behind the pillar is lit, which hardly any pixel faces: most light is reflected twice or more."""
-    low, high = np.array((-2.0, -3, 0)), np.array((2.0, 3, 2.5))
-
-    def far_wall(places, normals, things):
-        return np.where(places[:, 0] > 1.999, 1.0, 0), np.full(len(places), 0.7), np.zeros(len(places))
-
-    cast, rng = room((low, high), (np.array((0.9, -3, 0)), np.array((1.2, 2, 2.5)))), np.random.default_rng(0)
-    light = placing.bounces(*floor(low, high), cast, far_wall, rng)
-    at_once = light.toward < 0
-    assert light.sent.sum() == pytest.approx(1) and light.sent[at_once].sum() < 0.4
-    assert light.weights[at_once].sum() * light.weights.size > at_once.sum(), "all that goes on passes them"
-    unseen, half = np.zeros(len(light.places), bool), np.tan(np.radians(50)) * np.array((1, 9 / 16))
-    poses = placing.place(light, unseen, cast, half, 7, rng)
-    assert placing.covered(light, unseen, cast, half, poses)[-1] > 0.9
-    assert any(pose[0, 3] > 1.2 or (pose[1, 3] > 2 and -pose[0, 2] > 0) for pose in poses), "one looks behind it"
-
-
-def test_nothing_to_see_and_nowhere_to_stand(placing):
-    low, high, rng = np.array((-5.0, -5, 0)), np.array((5.0, 5, 0.05)), np.random.default_rng(0)
-
-    def nothing(origins, directions, limits, nearest=True):
-        return np.full(len(origins), np.inf), np.zeros((len(origins), 3)), np.full(len(origins), -1)
-
-    assert placing.bounces(*floor(low, high), nothing, evenly, rng) is None
-    assert placing.bounces(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), nothing, evenly, rng) is None
-    assert len(placing.pixels(np.zeros((4, 4), bool), 100, rng)) == 0
-    cast = room((low, high))
-    light = placing.bounces(*floor(low, high), cast, evenly, rng)
-    seen = np.arange(len(light.places)) % 2 == 0
-    assert placing.place(light, seen, cast, (1, 1), 7, rng) == []
-    assert placing.covered(light, seen, cast, (1, 1), []) == [pytest.approx(light.arrives(seen))]
-
-
-def test_lookat_is_upright_in_every_direction(placing):
-    for direction in placing.DIRECTIONS:
-        pose = placing.looking(np.array((1.0, 2, 3)), direction)
-        assert np.allclose(-pose[:3, 2], direction) and pose[2, 1] > -1e-9
 
 
 # In renders
 
 
 def corner(scene):
-    """The box, seen so closely that most of it is out of the picture."""
+    """The box, seen from so close that most of it is outside the image."""
     scene.camera.location, scene.camera.rotation_euler = (-0.5, 0, 0), np.radians((90, 0, 90))
     scene.afterlight.view_count = 5
     scene.afterlight.views, scene.afterlight.enabled = "AUTOMATIC", True
@@ -406,14 +246,14 @@ def poses(scene, views):
 
 def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
     corner(scene)
-    status = afterlight.addon.host.report
+    report = afterlight.addon.host.report
     for view in views.scenes(scene):
         view.view_layers[0].use_pass_position = True
     render(scene, tmp_path / "lit.exr")
-    assert scene.afterlight.report == "" and not status.warnings(scene)
-    shares, _ = status.coverage(scene)
+    assert scene.afterlight.report == "" and not report.warnings(scene)
+    shares, _ = report.coverage(scene)
     assert shares[0] < 0.5 and shares[-1] > 0.95 and len(shares) == len(seen) + 1
-    stages = status.stages(scene)
+    stages = report.stages(scene)
     assert (
         list(stages)[:3] == ["place views", "EEVEE, views", "write passes"]
         and stages["EEVEE, views"] > stages["hand back"]
@@ -425,7 +265,7 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
         assert np.abs(np.abs(found) - (2, 2, 1.5)).min(1).max() < 1e-3, "on a wall of the room"
         assert all(np.isfinite(axis[hit]).all() for axis in passes.diffuse_direct)
     used, first = len(seen), poses(scene, views)
-    for view in views.scenes(scene)[used:]:  # what is not needed is not rendered
+    for view in views.scenes(scene)[used:]:  # views that are not needed are not rendered
         with pytest.raises(RuntimeError, match="does not have any image data"):
             bpy.data.images["Render Result"].save_render(str(tmp_path / "none.exr"), scene=view)
     assert not any(view.view_layers[0].use for view in views.scenes(scene)), "at rest no view is rendered"
@@ -439,35 +279,35 @@ def test_automatic_views_end_to_end(scene, views, afterlight, seen, tmp_path):
 
     seen.clear()  # lit again: the kept views are used, and EEVEE does not render them
     assert bpy.ops.afterlight.update() == {"FINISHED"}
-    assert len(seen) == used and not status.warnings(scene) and "EEVEE, views" not in status.stages(scene)
-    scene.afterlight.view_count += 1  # that many were not asked for when it was rendered
+    assert len(seen) == used and not report.warnings(scene) and "EEVEE, views" not in report.stages(scene)
+    scene.afterlight.view_count += 1  # fewer were asked for when it was rendered
     assert bpy.ops.afterlight.update() == {"FINISHED"}
-    (said,) = status.warnings(scene)
+    (said,) = report.warnings(scene)
     assert "Press F12" in said and scene.afterlight.report == ""
     scene.afterlight.view_count -= 1
 
     for view in views.scenes(scene)[1:used]:  # far from where they should be
         view.camera.location = (100, 0, 0)
-    stored = views.placed(scene)
-    views.keep_placed(scene, type(stored)([np.eye(4)], stored.coverage, stored.clearance))
+    stored = views.stored_placement(scene)
+    views.store_placement(scene, type(stored)([np.eye(4)], stored.coverage, stored.clearance))
     render(scene, tmp_path / "lit.exr")
-    shares, _ = status.coverage(scene)
+    shares, _ = report.coverage(scene)
     assert shares[-1] > 0.95, "coverage had fallen, so the views moved"
 
-    stored = views.placed(scene)
+    stored = views.stored_placement(scene)
     assert bpy.ops.afterlight.place_views() == {"FINISHED"} and scene.afterlight.views == "MANUAL"
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    lenses = afterlight.addon.scene.view_cameras
+    view_cameras = afterlight.addon.scene.view_cameras
     kept = [each.camera.evaluated_get(depsgraph) for each in scene.afterlight.view_cameras]
     assert np.allclose([camera.matrix_world for camera in kept], stored.poses, atol=1e-5)
     for camera in kept:
         assert np.allclose(
-            lenses.lens_of(camera, depsgraph, scene).pixel, lenses.wide_lens(scene, 0, 0).pixel, rtol=1e-5
+            view_cameras.lens_of(camera, depsgraph, scene).pixel, view_cameras.wide_lens(scene, 0, 0).pixel, rtol=1e-5
         )
 
 
 def pane(kind):
-    """Something a metre across in the way of a ray along y."""
+    """An object a metre across in the path of a ray along y."""
     if kind == "hair":
         hair = bpy.data.hair_curves.new("Hair")
         hair.add_curves([2] * 50)
@@ -490,7 +330,7 @@ def pane(kind):
     [("wall", True), ("glass", True), ("transparent", False), ("alpha", False), ("volume", False), ("hair", False)],
 )
 def test_what_stands_in_the_way_of_a_view(scene, afterlight, kind, stops):
-    """What EEVEE sees through does not hide the wall behind it, two metres from the middle."""
+    """Materials that EEVEE sees through don't hide the wall behind them, two metres from the middle."""
     pane(kind)
     bpy.context.view_layer.update()
     geometry = afterlight.addon.views.ray_cast.Geometry(bpy.context.evaluated_depsgraph_get())
@@ -509,12 +349,12 @@ def test_two_scenes_that_share_a_tree_do_not_render_each_others_views(scene, vie
     for each in views.scenes(scene):
         each.view_layers[0].use_pass_position = True
     render(scene, tmp_path / "lit.exr")
-    assert seen and views.placed(scene) is not None
-    assert views.placed(other) is None
+    assert seen and views.stored_placement(scene) is not None
+    assert views.stored_placement(other) is None
 
 
 def test_views_that_can_not_be_used_are_named_and_left_out(scene, views, afterlight, seen, tmp_path):
-    status = afterlight.addon.host.report
+    report = afterlight.addon.host.report
     scene.afterlight.enabled = True
     panorama = side_camera(type="PANO")
     panorama.name, away = "Dome", side_camera((0, 0, 5), (180, 0, 0))
@@ -524,7 +364,7 @@ def test_views_that_can_not_be_used_are_named_and_left_out(scene, views, afterli
         view.view_layers[0].use_pass_position = True
     render(scene, tmp_path / "lit.exr")
     assert scene.afterlight.report == "" and len(seen) == 1
-    text = " ".join(status.warnings(scene))
+    text = " ".join(report.warnings(scene))
     for part in (
         "no camera. Choose one",
         '"Lamp" is not a camera object',
@@ -532,11 +372,11 @@ def test_views_that_can_not_be_used_are_named_and_left_out(scene, views, afterli
         '"Away" sees no surface',
     ):
         assert part in text, part
-    assert len(status.warnings(scene)) == 4
+    assert len(report.warnings(scene)) == 4
 
 
 def test_a_view_that_fails_leaves_the_others(scene, views, afterlight, seen, tmp_path, monkeypatch):
-    status, frame_store = afterlight.addon.host.report, afterlight.addon.scene.frame_store
+    report, frame_store = afterlight.addon.host.report, afterlight.addon.scene.frame_store
     scene.afterlight.enabled = True
     by_hand(scene, side_camera(), side_camera())
     for view in views.scenes(scene):
@@ -545,20 +385,20 @@ def test_a_view_that_fails_leaves_the_others(scene, views, afterlight, seen, tmp
 
     def fail(each):
         if each == views.scenes(scene)[0]:
-            raise status.Problem("The disk is full")
+            raise report.Problem("The disk is full")
         return save(each)
 
     monkeypatch.setattr(frame_store, "save", fail)
     render(scene, tmp_path / "lit.exr")
     assert scene.afterlight.report == "" and len(seen) == 1
-    assert status.warnings(scene) == ["A view could not be used: The disk is full"]
+    assert report.warnings(scene) == ["A view could not be used: The disk is full"]
 
 
 @pytest.mark.parametrize("covers", [True, False])
-def test_what_covers_the_world_is_to_be_seen_as_well(scene, placing, monkeypatch, tmp_path, covers):
-    """The box sends nothing by itself: all that its surfaces weigh beyond what they reflect is the world's light
-    behind them."""
-    sent, bounces = [], placing.bounces
+def test_what_covers_the_world_is_to_be_seen_as_well(scene, placement, monkeypatch, tmp_path, covers):
+    """The box emits nothing: all weight of its surfaces beyond what they reflect is the world's light that they
+    block."""
+    sent, bounces = [], placement.trace
 
     def spy(places, normals, albedo, cast, radiance, rng, most):
         def and_keep(*hits):
@@ -568,7 +408,7 @@ def test_what_covers_the_world_is_to_be_seen_as_well(scene, placing, monkeypatch
 
         return bounces(places, normals, albedo, cast, and_keep, rng, most)
 
-    monkeypatch.setattr(placing, "bounces", spy)
+    monkeypatch.setattr(placement, "trace", spy)
     scene.world = bpy.data.worlds.new("Bright")
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.6, 0.6, 0.6, 1)
     scene.afterlight.views, scene.afterlight.use_world_shadow, scene.afterlight.enabled = "AUTOMATIC", covers, True
@@ -596,8 +436,7 @@ def test_a_muted_view_is_not_used(scene, views, seen, tmp_path):
 
 
 def test_the_picture_is_written_once_a_frame(scene, afterlight, tmp_path, monkeypatch):
-    """The engines of the views and of the light read one file, of this very frame; nothing is left of it but what is
-    kept."""
+    """The placement engine and the light engine read the same file of this frame; only what is kept remains of it."""
     written, save = [], afterlight.addon.scene.frame_store.save
     monkeypatch.setattr(afterlight.addon.scene.frame_store, "save", lambda lit: written.append(lit) or save(lit))
     scene.afterlight.views, scene.afterlight.view_count, scene.afterlight.enabled = "AUTOMATIC", 1, True

@@ -116,7 +116,7 @@ def test_help_lists_the_stages_that_renders_report():
 
 def test_limits_of_bounces_are_told(addon):
     """Placement and drafts count fewer of them than the setting says."""
-    depth, draft = addon.views.placement.DEPTH, addon.viewport.region_light.DRAFT_BOUNCES
+    depth, draft = addon.views.placement.MAX_BOUNCES, addon.viewport.region_light.DRAFT_BOUNCES
     bounces = next(parameter for parameter in addon.parameters.PARAMETERS if parameter.name == "bounces")
     assert depth < bounces.options["max"] and f"the first {depth} bounces" in bounces.tooltip
     text = (extension.ROOT / "docs" / "help.html").read_text()
@@ -192,9 +192,9 @@ def test_german_has_every_text_and_no_other(addon):
     status = addon.host.report
     texts = {text: "a class" for text in rna_texts(addon)} | dict(said_texts())
     stages = [text for text in texts if text.islower()]  # stages are said in words of their own
-    texts = {status.in_words(text) if text in stages else text: place for text, place in texts.items()}
+    texts = {status.label(text) if text in stages else text: place for text, place in texts.items()}
     for stage in (*STAGES, *LIGHT_STAGES):
-        texts[status.in_words(stage)] = "a stage"
+        texts[status.label(stage)] = "a stage"
     texts = {text: place for text, place in texts.items() if re.search("[a-z]", text)}
     missing = {text: place for text, place in texts.items() if text not in german}
     assert not missing, "\n".join(f"{place}: {text!r}" for text, place in missing.items())

@@ -20,8 +20,8 @@ import extension
 CALL = "call"  # that the main thread makes for us
 # What is watched in the extension, from the outside in: a stall belongs to the innermost that runs.
 WATCHED = {
-    CALL: ("host.main_thread", "_make"),
-    "save passes": ("scene.passes", "save"),
+    CALL: ("host.main_thread", "_make_call"),
+    "save passes": ("scene.frame_store", "save"),
     "load passes": ("scene.passes", "load"),
     "wait": ("gather.device", "wait"),
     "compile": ("gather.device", "shader"),

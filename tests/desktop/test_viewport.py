@@ -39,7 +39,10 @@ def handlers():
 
 def progress():
     """[(gathers, how many, further views)] of each region that is lit."""
-    return [(region._gathers, region._wanted, len(region.further.views())) for region in viewports._regions.values()]
+    return [
+        (region._gathers, region._gathers_wanted, len(region.view_cache.views()))
+        for region in viewports._region_lights.values()
+    ]
 
 
 def change(code):
@@ -108,7 +111,7 @@ def test_it_is_switched_by_mouse_and_comes_to_rest(window, afterlight):
 
     window.point_at(TOGGLE, along=200)
     window.click()
-    window.wait("not bpy.context.scene.afterlight.use_viewport and not viewports._regions")
+    window.wait("not bpy.context.scene.afterlight.use_viewport and not viewports._region_lights")
     time.sleep(3)
     assert np.abs(picture(window, "viewport_after") - before).mean() < 0.5
 
@@ -169,7 +172,7 @@ def test_a_lamp_that_a_script_moves_shows(window, afterlight):
     moved = picture(window, "viewport_lamp")
     # The same as if the light had been gathered there from the beginning.
     window.run(change, "bpy.context.scene.afterlight.use_viewport = False")
-    window.wait("not viewports._regions")
+    window.wait("not viewports._region_lights")
     switch_on(window)
     wait_for_light(window)
     assert np.abs(picture(window, "viewport_lamp_anew") - moved).mean() < 2
@@ -235,12 +238,12 @@ def test_quad_view_local_view_and_another_size(window, afterlight):
     time.sleep(1)
     wait_for_light(window)
     window.run(operate, "bpy.ops.screen.region_quadview()")
-    window.wait("len(viewports._regions) == 4")
+    window.wait("len(viewports._region_lights) == 4")
     wait_for_light(window)
     window.picture("viewport_quad", "VIEW_3D")
-    assert window.value("len(viewports._further)") == 1
+    assert window.value("len(viewports._view_caches)") == 1
     window.run(operate, "bpy.ops.screen.region_quadview()")
-    window.wait("len(viewports._regions) == 1", 60)
+    window.wait("len(viewports._region_lights) == 1", 60)
     wait_for_light(window)
 
     window.run(
@@ -257,10 +260,10 @@ def test_other_shadings_are_left_alone(window, afterlight):
     open_lit_box(window, scale="8")
     for shading in ("SOLID", "MATERIAL", "WIREFRAME"):
         window.run(change, f"space.shading.type = {shading!r}")
-        window.wait("not viewports._regions and not viewports._further", 60)
+        window.wait("not viewports._region_lights and not viewports._view_caches", 60)
     window.run(change, "space.shading.type, space.shading.render_pass = 'RENDERED', 'NORMAL'")
     time.sleep(2)
-    assert window.value("not viewports._regions")
+    assert window.value("not viewports._region_lights")
     window.run(change, "space.shading.render_pass = 'COMBINED'")
     wait_for_light(window)
 
@@ -273,9 +276,9 @@ def test_a_second_viewport_undo_and_another_file(window, afterlight):
         "timeline = area('DOPESHEET_EDITOR')[1]; timeline.type = 'VIEW_3D'; "
         "timeline.spaces.active.shading.type = 'RENDERED'",
     )
-    window.wait("len(viewports._regions) == 2", 60)
+    window.wait("len(viewports._region_lights) == 2", 60)
     wait_for_light(window)
-    assert window.value("len(viewports._further)") == 2
+    assert window.value("len(viewports._view_caches)") == 2
 
     window.value("bpy.ops.ed.undo_push(message='Before') and None")
     window.run(change, "bpy.data.objects['Lamp'].location.x = -1")
@@ -288,11 +291,11 @@ def test_a_second_viewport_undo_and_another_file(window, afterlight):
     window.run(steps.save_as, path)
     window.run(steps.open_file, path)
     time.sleep(2)
-    assert window.value("not viewports._regions"), "Blender opens files with solid shading"
+    assert window.value("not viewports._region_lights"), "Blender opens files with solid shading"
     window.run(change, "space.shading.type = 'RENDERED'")
     wait_for_light(window)
     steps.new_box(window)
-    window.wait("not viewports._regions and not viewports._further")
+    window.wait("not viewports._region_lights and not viewports._view_caches")
 
 
 def test_a_render_and_a_viewport_go_together(window, afterlight):
@@ -333,7 +336,7 @@ def test_a_gpu_that_refuses_switches_it_off_with_a_message(window, afterlight):
         window.wait("viewports.problem(bpy.context.scene).startswith('The GPU has no memory')", 30)
         time.sleep(2)
         window.picture("viewport_refused")
-        assert window.value("not viewports._regions and not viewports._further")
+        assert window.value("not viewports._region_lights and not viewports._view_caches")
     finally:
         window.run(refuse_no_more)
     window.key("Escape")  # the message
@@ -382,5 +385,5 @@ def test_no_redraw_leaves_textures_behind(window, afterlight, computer):
     wait_for_light(window)
     assert window.run(count_textures) == before
     window.run(change, "bpy.context.scene.afterlight.use_viewport = False")
-    window.wait("not viewports._regions")
+    window.wait("not viewports._region_lights")
     assert window.run(count_textures) == [0, 0]

@@ -27,7 +27,7 @@ CASES = (
 )
 # What is timed: a stage, the module of the extension, and the names in it. A stage has what those within it do not.
 STAGES = (
-    ("passes", "viewport.offscreen", "Film.draw"),
+    ("passes", "viewport.offscreen", "OffscreenPicture.draw"),
     ("split", "gather.interactive", "split"),
     ("views, emitters", "gather.interactive", "build_records"),
     ("surfels", "gather.interactive", "pack"),
@@ -40,7 +40,7 @@ STAGES = (
     ("smooth", "gather.interactive", "upsample"),
     ("composite", "gather.interactive", "composite"),
     ("mean", "gather.interactive", "Mean.add"),
-    ("place views", "viewport.view_cache", "Further.place"),
+    ("place views", "viewport.view_cache", "ViewCache.place"),
 )
 EEVEE = "passes", "split"
 
@@ -86,8 +86,8 @@ def time_stages(stages):
 
     for stage, module, path in stages:
         watch(stage, module, path)
-    region = importlib.import_module(root + "viewport.region_light").Region
-    for kind in ("_draft", "_gather"):
+    region = importlib.import_module(root + "viewport.region_light").RegionLight
+    for kind in ("_gather_draft", "_gather"):
 
         def begun(self, *arguments, kind=kind, function=getattr(region, kind)):
             spent.append((kind, {}))
@@ -102,15 +102,15 @@ def draw_alone(count):
 
     import gpu
     import numpy as np
-    from bl_ext.user_default.afterlight.addon.viewport import eevee, region
+    from bl_ext.user_default.afterlight.addon.viewport import region_light
 
     window, editor, shown = area("VIEW_3D")
     space = editor.spaces.active
-    stage = region.Stage(
+    stage = region_light.ViewportContext(
         bpy.context.scene, bpy.context.view_layer, space, shown, space.region_3d, bpy.context.evaluated_depsgraph_get()
     )
     off, found = gpu.types.GPUOffScreen(*stage.extent, format="RGBA16F"), []
-    with eevee.drawing(stage):
+    with offscreen.drawing(stage):
         space.shading.render_pass = "COMBINED"
         for number in range(count + 1):
             matrix = stage.rv3d.view_matrix.copy()

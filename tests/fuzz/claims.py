@@ -161,7 +161,7 @@ def _settle(module):
     for scene in bpy.data.scenes:
         addon.diagnosis.checks.findings(scene)
         if not scene.afterlight.role and addon.scene.needs.views(scene):
-            addon.compositor.view_scenes.placed(scene)
+            addon.compositor.view_scenes.stored_placement(scene)
 
 
 def _files(module, junk, at, damage):

@@ -360,7 +360,7 @@ class FileMachine(RuleBasedStateMachine):
     @invariant()
     def our_scenes_are_as_many_as_they_should(self):
         for scene in self.scenes():
-            served = [each for each in bpy.data.scenes if self.module.addon.host.roles.source(each) == scene]
+            served = [each for each in bpy.data.scenes if self.module.addon.host.roles.lit_scene(each) == scene]
             wanted = 1 + max(self.module.addon.scene.needs.views(scene), 0) + 1
             assert len(served) <= (wanted if scene.afterlight.enabled else 0), [each.name for each in served]
         assert not [scene for scene in bpy.data.scenes if scene.afterlight.role and scene.afterlight.enabled]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which frames' light goes on into which, in Blender: animations, cuts, a farm's pieces, and what it leaves in the
-file."""
+"""Which earlier frame's light a frame reuses, in Blender: animations, cuts, the pieces of a render farm, and what it
+leaves in the file."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ FRAMES, REBUILT = 5, 9
 
 @pytest.fixture
 def scene(fresh):
-    """A camera that moves a little, noisy light of one view."""
+    """A camera that moves a little, and noisy light of one view."""
     scene = box(fresh, samples=1)
     settings = scene.afterlight
     settings.method, settings.views, settings.draws, settings.bounces = "RADIOSITY", "CAMERA", 2, 1
@@ -27,7 +27,7 @@ def scene(fresh):
 
 @pytest.fixture
 def gathered(afterlight, monkeypatch):
-    """(frame, view layer, mean of the gathers that its light is of) of all frames that take part in an average."""
+    """(frame, view layer, mean number of gathers in its light) of all frames that are averaged."""
     found, histories = [], afterlight.addon.render.histories.Histories
     keep = histories.keep
 
@@ -40,7 +40,7 @@ def gathered(afterlight, monkeypatch):
 
 
 def animation(scene, folder, first, last, now=99):
-    """{frame: picture}, of a job begun at frame `now`."""
+    """{frame: image} of an animation that starts while frame `now` is current."""
     scene.frame_start, scene.frame_end = first, last
     scene.frame_set(now)
     scene.render.filepath = f"{folder}/"
@@ -50,7 +50,7 @@ def animation(scene, folder, first, last, now=99):
 
 
 def counts(gathered):
-    """How many gathers each frame is of, roughly: what newly comes into the picture is of one."""
+    """How many gathers are in each frame's light, roughly: newly visible surfaces have one."""
     return [round(count) for _, _, count in gathered]
 
 
@@ -104,8 +104,7 @@ def test_each_view_layer_has_a_history_of_its_own(scene, gathered, tmp_path):
 
 
 def test_a_single_frame_is_as_without(scene, gathered, tmp_path):
-    """F12, and the frame at which a script's animation begins, if that is the current one: nobody can tell it from
-    F12."""
+    """F12, and the first frame of a script's animation if it is the current frame: it can't be told from F12."""
     scene.frame_set(2)
     scene.render.filepath = str(tmp_path / "on.exr")
     bpy.ops.render.render(write_still=True)
@@ -136,8 +135,7 @@ def test_command_lines_that_render_animations(afterlight, monkeypatch):
 
 
 def noise_of(scene, folder, frame):
-    """Root mean square of the difference of two seeds of a single frame, by the square root of two: one frame's own
-    noise."""
+    """Noise of a single frame: root mean square difference of two seeds, divided by the square root of two."""
     scene.afterlight.use_history, pictures = False, []
     for seed in (100, 200):
         scene.afterlight.seed = seed
@@ -147,7 +145,7 @@ def noise_of(scene, folder, frame):
 
 
 def test_a_farms_pieces_are_the_whole_within_a_frames_noise(scene, tmp_path):
-    """And calmer than that, at a piece's first frame as after it."""
+    """And with less noise than that, at a piece's first frame as after it."""
     whole = animation(scene, tmp_path / "whole", 1, 5)
     piece = animation(scene, tmp_path / "piece", 4, 5)
     noise = noise_of(scene, tmp_path / "single", 4)
@@ -156,7 +154,7 @@ def test_a_farms_pieces_are_the_whole_within_a_frames_noise(scene, tmp_path):
 
 
 def test_moving_pictures_are_calmer(scene, tmp_path):
-    """Of a camera at rest: what changes from frame to frame is noise, and an eighth of it is left."""
+    """With a camera at rest: what changes between frames is noise, and an eighth of it is left."""
     scene.camera.animation_data_clear()
     change = {}
     for average in (True, False):
@@ -185,7 +183,7 @@ def test_the_motion_pass_is_switched_on_and_off(scene):
 
 
 def test_motion_is_told_by_eevee(scene, afterlight, monkeypatch, tmp_path):
-    """A wall that moves sideways by itself; with motion blur there is no motion to read, and frames render all the
+    """A wall that moves sideways by itself. With motion blur there are no motion vectors, and frames render all the
     same."""
     found, load = [], afterlight.addon.scene.passes.load
 

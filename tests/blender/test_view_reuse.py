@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Views are kept from frame to frame where nothing that they see can change, and nowhere else."""
+"""Views are reused from frame to frame if nothing that they see can change, and only then."""
 
 import bpy
 import numpy as np
@@ -17,12 +17,12 @@ def scene(fresh):
 
 
 @pytest.fixture
-def still(afterlight):
+def scene_animation(afterlight):
     return afterlight.addon.scene.animation
 
 
 def keyed(thing, path="location", index=0):
-    """`thing` moves in the three frames."""
+    """Make `thing` move in the three frames."""
     for frame in (1, 3):
         value = getattr(thing, path)
         if hasattr(value, "__len__"):
@@ -96,24 +96,24 @@ MOVE = {
 
 
 @pytest.mark.parametrize("change", KEEP)
-def test_what_keeps_still(scene, still, change):
+def test_what_keeps_still(scene, scene_animation, change):
     KEEP[change](scene)
-    assert still.moving(scene, bpy.context.evaluated_depsgraph_get()) == ""
+    assert scene_animation.find_motion(scene, bpy.context.evaluated_depsgraph_get()) == ""
 
 
 @pytest.mark.parametrize("change", MOVE)
-def test_what_may_move(scene, still, change):
+def test_what_may_move(scene, scene_animation, change):
     MOVE[change](scene)
-    assert still.moving(scene, bpy.context.evaluated_depsgraph_get()) != ""
+    assert scene_animation.find_motion(scene, bpy.context.evaluated_depsgraph_get()) != ""
 
 
-def test_scripts_between_frames_may_move_anything(scene, still):
+def test_scripts_between_frames_may_move_anything(scene, scene_animation):
     def script(*_):
         pass
 
     bpy.app.handlers.frame_change_pre.append(script)
     try:
-        assert still.moving(scene, bpy.context.evaluated_depsgraph_get()) != ""
+        assert scene_animation.find_motion(scene, bpy.context.evaluated_depsgraph_get()) != ""
     finally:
         bpy.app.handlers.frame_change_pre.remove(script)
 
@@ -128,7 +128,7 @@ def animation(scene, folder):
 
 @pytest.fixture
 def rendered(afterlight, monkeypatch):
-    """The names of the scenes whose passes were written."""
+    """The names of the scenes whose passes were saved."""
     names, save = [], afterlight.addon.scene.frame_store.save
 
     def spy(scene):
@@ -143,13 +143,13 @@ def views_among(names):
     return sum(name.startswith(".Afterlight View") for name in names)
 
 
-def test_views_are_rendered_once_while_only_the_camera_moves(scene, still, rendered, monkeypatch, tmp_path):
+def test_views_are_rendered_once_while_only_the_camera_moves(scene, scene_animation, rendered, monkeypatch, tmp_path):
     scene.afterlight.enabled = True
     keyed(scene.camera)
     kept = animation(scene, tmp_path / "kept")
     assert views_among(rendered) == 2
     rendered.clear()
-    monkeypatch.setattr(still, "moving", lambda *_: "everything")
+    monkeypatch.setattr(scene_animation, "find_motion", lambda *_: "everything")
     anew = animation(scene, tmp_path / "anew")
     assert views_among(rendered) == 6
     for one, other in zip(kept, anew):

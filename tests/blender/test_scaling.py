@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What must not grow with a scene: the time to place views with its instances and polygons, the memory with its
-pictures."""
+"""Costs that must not grow with a scene: the time to place views with its instances and polygons, the memory with its
+images."""
 
 import subprocess
 import sys
@@ -21,17 +21,17 @@ def scene(fresh):
 
 
 @pytest.fixture
-def rays(afterlight):
+def ray_cast(afterlight):
     return afterlight.addon.views.ray_cast
 
 
 @pytest.fixture
-def stand_in(rays):
-    return rays.proxy_mesh
+def proxy_mesh(ray_cast):
+    return ray_cast.proxy_mesh
 
 
 def seconds(call, times=2):
-    """(the least that it took of the processor, what it gave)."""
+    """(least CPU seconds of several calls, the last result)."""
     taken = []
     for _ in range(times):
         start = time.process_time()
@@ -46,7 +46,7 @@ def evaluated():
 
 
 def instances(count, size=0.01):
-    """So many cubes, in a square on the floor."""
+    """That many cubes, instanced in a square on the floor."""
     line = np.linspace(-1.8, 1.8, int(count**0.5))
     points = np.stack([*np.meshgrid(line, line), np.full((len(line), len(line)), -1.3)], -1).reshape(-1, 3)
     mesh = bpy.data.meshes.new("Points")
@@ -58,44 +58,44 @@ def instances(count, size=0.01):
 
 
 def about(count=2000):
-    """Rays from the middle of the box, all around."""
+    """Rays from the middle of the box, in all directions."""
     directions = np.random.default_rng(0).normal(size=(count, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     return np.full((count, 3), (0.1, 0.2, 0.3)), directions, np.full(count, np.inf)
 
 
-def place(rays, placement, depsgraph):
-    """What the scout does, with the floor for what the picture shows."""
-    geometry, rng = rays.Geometry(depsgraph), np.random.default_rng(0)
+def place(ray_cast, placement, depsgraph):
+    """Place views as the placement engine does, with the floor as what the main view shows."""
+    geometry, rng = ray_cast.Geometry(depsgraph), np.random.default_rng(0)
     x, y = rng.uniform(-1, 1, (2, 500))
     starts, up = np.stack([x, y, np.full(500, -1.2)], -1), np.tile((0.0, 0, 1), (500, 1))
 
-    def radiance(places, normals, things):
-        albedo, emission = geometry.look(things)
-        return rays.direct_light(geometry, places, normals, rng), albedo, emission
+    def radiance(positions, normals, things):
+        albedo, emission = geometry.albedo_and_emission(things)
+        return ray_cast.direct_light(geometry, positions, normals, rng), albedo, emission
 
-    light = placement.bounces(starts, up, np.full(500, 0.8), geometry.cast, radiance, rng)
-    half, unseen = (1.7, 1.7), np.zeros(len(light.places), bool)
+    light = placement.trace(starts, up, np.full(500, 0.8), geometry.cast, radiance, rng)
+    half, unseen = (1.7, 1.7), np.zeros(len(light.positions), bool)
     poses = placement.place(light, unseen, geometry.cast, half, 3, rng)
-    return placement.covered(light, unseen, geometry.cast, half, poses)[-1]
+    return placement.coverage(light, unseen, geometry.cast, half, poses)[-1]
 
 
-def test_many_instances_cost_little(scene, rays, afterlight):
-    """2.3 seconds were 2,000, and 14 were 20,000: now 100,000 take at most one second more than none do, and a busy
-    machine two."""
+def test_many_instances_cost_little(scene, ray_cast, afterlight):
+    """Before, 2,000 instances took 2.3 seconds, and 20,000 took 14. Now 100,000 take at most one second more than none,
+    on a busy machine two."""
     placement = afterlight.addon.views.placement
     depsgraph = evaluated()
-    bare, sees = seconds(lambda: place(rays, placement, depsgraph))
+    bare, sees = seconds(lambda: place(ray_cast, placement, depsgraph))
     instances(100_000)
     depsgraph = evaluated()
-    full, still_sees = seconds(lambda: place(rays, placement, depsgraph))
+    full, still_sees = seconds(lambda: place(ray_cast, placement, depsgraph))
     assert full < 2 * bare + 2, (bare, full)
     assert sees > 0.95 and still_sees > 0.8
 
 
-def test_heavy_meshes_cost_little_and_are_where_they_were(scene, rays):
-    """The walls of the box in 1.3 million polygons, seen from its middle."""
-    plain = rays.Geometry(evaluated())
+def test_heavy_meshes_cost_little_and_are_where_they_were(scene, ray_cast):
+    """The walls of the box with 1.3 million polygons, seen from its middle."""
+    plain = ray_cast.Geometry(evaluated())
     exact = plain.cast(*about())
     for thing in [thing for thing in scene.objects if thing.type == "MESH"]:
         modifier = thing.modifiers.new("Finer", "SUBSURF")
@@ -103,17 +103,19 @@ def test_heavy_meshes_cost_little_and_are_where_they_were(scene, rays):
     depsgraph = evaluated()
     for thing in depsgraph.objects:  # Blender subdivides a mesh when it is first asked for
         assert thing.type != "MESH" or len(thing.data.polygons) == 2**18
-    taken, (geometry, found) = seconds(lambda: (geometry := rays.Geometry(depsgraph), geometry.cast(*about())), times=1)
+    taken, (geometry, found) = seconds(
+        lambda: (geometry := ray_cast.Geometry(depsgraph), geometry.cast(*about())), times=1
+    )
     assert taken < 2
     assert (np.isfinite(found[0]) == np.isfinite(exact[0])).mean() > 0.999
     both = np.isfinite(found[0]) & np.isfinite(exact[0])
     assert np.allclose(found[0][both], exact[0][both], atol=1e-3)
     assert np.abs(np.sum(found[1] * exact[1], 1))[both].min() > 0.999
-    assert np.array_equal(geometry.look(found[2][both]), plain.look(exact[2][both]))
+    assert np.array_equal(geometry.albedo_and_emission(found[2][both]), plain.albedo_and_emission(exact[2][both]))
 
 
-def test_few_triangles_are_hit_as_they_are(scene, rays):
-    """A ball, a concave polygon with two materials, and instances of both: as Blender's own ray casts have them."""
+def test_few_triangles_are_hit_as_they_are(scene, ray_cast):
+    """A ball, a concave polygon with two materials, and instances of both: hit as by Blender's own ray cast."""
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5, location=(0.8, 0.9, -0.4), scale=(1, 0.5, 1.3))
     mesh = bpy.data.meshes.new("Arrow")
     mesh.from_pydata(
@@ -137,9 +139,9 @@ def test_few_triangles_are_hit_as_they_are(scene, rays):
     put(mesh, (-0.8, -0.5, -0.5), (30, -20, 50)).scale = (0.5, -0.7, 1)
     assert arrow.data is mesh
     depsgraph = evaluated()
-    geometry, (origins, directions, limits) = rays.Geometry(depsgraph), about()
+    geometry, (origins, directions, limits) = ray_cast.Geometry(depsgraph), about()
     distance, normal, thing = geometry.cast(origins, directions, limits)
-    albedo, dark = geometry.look(thing)[0], 0
+    albedo, dark = geometry.albedo_and_emission(thing)[0], 0
     for index, (origin, direction) in enumerate(zip(origins, directions)):
         hit, place, facing, face, on, _ = scene.ray_cast(depsgraph, origin, direction)
         assert hit == np.isfinite(distance[index])
@@ -151,37 +153,39 @@ def test_few_triangles_are_hit_as_they_are(scene, rays):
     assert dark > 3
 
 
-def test_a_sample_of_instances_covers_as_much(stand_in):
-    """As much area is kept, none is kept twice, and what is large is kept as it is."""
+def test_a_sample_of_instances_covers_as_much(proxy_mesh):
+    """The sample covers the same area, contains no instance twice, and keeps large ones unscaled."""
     areas = np.concatenate([np.random.default_rng(1).uniform(0.5, 2, 200_000), [1e5, 1e9]])
-    drawn, factors = stand_in.sample(areas)
-    assert len(drawn) < 1.1 * stand_in.TRIANGLES / (2 * stand_in.FEWEST) and len(set(drawn)) == len(drawn)
+    drawn, factors = proxy_mesh.sample_instances(areas)
+    assert len(drawn) < 1.1 * proxy_mesh.TRIANGLE_BUDGET / (2 * proxy_mesh.MIN_TRIANGLES) and len(set(drawn)) == len(
+        drawn
+    )
     assert {200_000, 200_001} <= set(drawn) and np.all(factors[-2:] == 1)
     assert (areas[drawn] * factors**2)[:-2].sum() == pytest.approx(areas[:-2].sum(), rel=0.05)
-    few, whole = stand_in.sample(areas[:100])
+    few, whole = proxy_mesh.sample_instances(areas[:100])
     assert np.array_equal(few, np.arange(100)) and np.all(whole == 1)
 
 
-def test_triangles_are_shared_out_by_length(stand_in):
+def test_triangles_are_shared_out_by_length(proxy_mesh):
     counts, uses = np.array([10, 10**6, 10**6, 50]), np.array([1, 1, 10, 10**3])
-    given = stand_in.shares(counts, uses, np.array([1e4, 30.0, 3.0, 1.0]))
-    assert given[0] == stand_in.FEWEST and given[1] == pytest.approx(10 * given[2])
-    assert (np.minimum(given, counts) * uses).sum() == pytest.approx(stand_in.TRIANGLES, rel=0.25)
+    given = proxy_mesh.triangle_shares(counts, uses, np.array([1e4, 30.0, 3.0, 1.0]))
+    assert given[0] == proxy_mesh.MIN_TRIANGLES and given[1] == pytest.approx(10 * given[2])
+    assert (np.minimum(given, counts) * uses).sum() == pytest.approx(proxy_mesh.TRIANGLE_BUDGET, rel=0.25)
 
 
-def test_places_that_are_no_numbers_stop_no_ray(scene, rays):
-    """An object at infinity, one of NaN, a mesh with a corner of NaN: the rest is hit as before."""
-    exact = rays.Geometry(evaluated()).cast(*about())
+def test_places_that_are_no_numbers_stop_no_ray(scene, ray_cast):
+    """An object at infinity, one at NaN, a mesh with a NaN vertex: the rest is hit as before."""
+    exact = ray_cast.Geometry(evaluated()).cast(*about())
     for place in ((np.inf, 0, 0), (np.nan, 0, 0), (1e30, 0, 0)):
         bpy.ops.mesh.primitive_cube_add(size=0.1)
         bpy.context.object.location = place
     bpy.ops.mesh.primitive_cube_add(size=0.1, location=(0, 50, 0))
     bpy.context.object.data.vertices[0].co.x = np.nan
     put(bpy.data.meshes.new("Nothing"))
-    assert np.array_equal(rays.Geometry(evaluated()).cast(*about())[0], exact[0])
+    assert np.array_equal(ray_cast.Geometry(evaluated()).cast(*about())[0], exact[0])
 
 
-# Pictures
+# Images
 
 
 @pytest.fixture
@@ -190,7 +194,7 @@ def images(afterlight):
 
 
 def pattern(width, height):
-    """(height, width, 3) of radiance up to 2, the lowest row first."""
+    """(height, width, 3) of radiance up to 2, bottom row first."""
     y, x = np.mgrid[:height, :width]
     return np.stack([1 + np.sin(x / 7.0), 0.5 + 0.4 * np.cos(y / 5.0), (x + y) % 8 / 4], -1).astype(np.float32)
 
@@ -229,7 +233,8 @@ def test_pictures_are_read_as_their_means(fresh, images, kind, tmp_path):
 
 
 def test_a_sun_is_dimmed_before_the_mean(fresh, images, tmp_path):
-    """One pixel, which every eighth one would miss; with a limit it counts as that, in its own colour."""
+    """A single bright pixel, which sampling every eighth one would miss; with a limit it counts as the limit, in its
+    own colour."""
     values = np.full((64, 128, 3), 0.5, np.float32)
     values[11, 21] = 20000, 10000, 0
     sunny = image("float", tmp_path, values)
@@ -244,7 +249,7 @@ def test_what_is_no_picture_is_none(fresh, images, tmp_path):
     missing.source, missing.filepath = "FILE", str(tmp_path / "none.png")
     assert images.means(missing, 8, 8) is None
     broken = image("float", tmp_path, np.full((4, 4, 3), np.nan, np.float32))
-    broken.use_half_precision = False  # with it Blender makes black of them, for EEVEE as well
+    broken.use_half_precision = False  # with it Blender turns NaN into black, for EEVEE as well
     assert images.means(broken, 8, 8) is None
 
 
@@ -262,13 +267,13 @@ picture.image = bpy.data.images.new("Sky", 8192, 4096)
 tree.links.new(picture.outputs[0], background.inputs[0])
 gpu.texture.from_image(picture.image)  # as EEVEE does
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-assert world.light(bpy.context.evaluated_depsgraph_get(), dict()) is None  # black
+assert world.read(bpy.context.evaluated_depsgraph_get(), dict()) is None  # black
 print("MB:", (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
 """
 
 
 def test_a_large_world_picture_takes_no_memory(pytestconfig):
-    """8192 x 4096 as numbers were 512 MB more than EEVEE had of it already."""
+    """As an array of floats 8192 x 4096 pixels took 512 MB more than EEVEE already had."""
     code = MEMORY.format(paths=[str(pytestconfig.rootpath)])
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=600)
     assert "MB:" in told.stdout, told.stderr
@@ -280,7 +285,7 @@ def test_a_large_world_picture_takes_no_memory(pytestconfig):
 
 def test_edits_cost_nothing_where_no_viewport_is_lit(scene, afterlight, monkeypatch):
     changes, asked = import_module(f"{afterlight.addon.__name__}.viewport.scene_changes"), []
-    monkeypatch.setattr(changes, "_outline", lambda *arguments: asked.append(1))
+    monkeypatch.setattr(changes, "_state", lambda *arguments: asked.append(1))
     for enabled, viewport in ((False, True), (True, False), (True, True)):
         scene.afterlight.enabled, scene.afterlight.use_viewport = enabled, viewport
         bpy.context.view_layer.update()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What depth EEVEE's pixels have: that of a known place in each, by EEVEE's own Position pass."""
+"""Where in its pixels EEVEE samples depth, compared with its own Position pass."""
 
 import bpy
 import numpy as np
@@ -21,8 +21,8 @@ def scene(fresh):
 
 
 def missed(addon, scene):
-    """By how much of the depth pixels are away from where EEVEE saw them, in the mean: with what we know of its
-    samples, and taken for their middles."""
+    """Mean relative error of pixels' depth against EEVEE's Position pass: with our knowledge of its samples, and if
+    they are taken to be at the pixels' middles."""
     cameras, exr, frame_store, passes = (
         getattr(addon.scene, name) for name in ("cameras", "exr", "frame_store", "passes")
     )
@@ -45,7 +45,8 @@ def missed(addon, scene):
     ]
 
 
-# 1 has no filter, and neither has 0; of 4, 7 and 16 the last is kept though another is nearer, of 8 the nearest.
+# One sample is not filtered, nor is a filter of size 0. Of 4, 7 and 16 samples EEVEE keeps the last, though another is
+# nearer; of 8 the nearest.
 @pytest.mark.parametrize(
     "samples, filter_size",
     [(1, 1.5), (4, 1.5), (7, 1.5), (8, 1.5), (16, 1.5), (4, 0.5), (6, 0.5), (4, 0.0), (5, 0.72), (5, 2.0)],

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Render Layers node or link that is muted brings no picture, so it brings no light either, and nothing grey in
-their place."""
+"""A muted Render Layers node or link brings no image, so it must bring no light either, and no grey in their place."""
 
 import bpy
 import numpy as np
@@ -17,7 +16,7 @@ def scene(fresh):
 
 
 def both_layers(scene):
-    """The sum of both layers' images; the node of the second."""
+    """The sum of both layers' images; the Render Layers node of the second."""
     tree = compositor(scene)
     back, front = layers_node(tree, scene, "ViewLayer"), layers_node(tree, scene, "Front")
     mix, output = tree.nodes.new("ShaderNodeMix"), tree.nodes.new("NodeGroupOutput")
@@ -32,7 +31,7 @@ def both_layers(scene):
 
 @pytest.fixture(scope="module")
 def one_layers_light(afterlight, tmp_path_factory):
-    """What the light of one layer adds to the box."""
+    """The light that one layer adds to the box."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene, folder = box(bpy.context.scene, samples=1), tmp_path_factory.mktemp("one")
     plain = read_rgb(render(scene, folder / "plain.exr"))
@@ -42,7 +41,7 @@ def one_layers_light(afterlight, tmp_path_factory):
 
 @pytest.mark.parametrize("what, when", [("node", "before"), ("link", "after")])
 def test_a_muted_second_layer(scene, one_layers_light, tmp_path, what, when):
-    """Faults 3: grey of one half, and the light of a picture that is not there."""
+    """It used to add grey of one half, and the light of an image that was not there."""
     front = both_layers(scene)
 
     def mute():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the extension says of a world's light, against what EEVEE makes of it."""
+"""What world_light.read() says of a world's light, compared with EEVEE's."""
 
 import bpy
 import numpy as np
@@ -92,8 +92,8 @@ def read(scene, addon):
 
 
 def said(world):
-    """(6, 3): the same by our own idea of the world."""
-    found = world.light(bpy.context.evaluated_depsgraph_get(), {})
+    """(6, 3): the same light as world_light.read() computes it."""
+    found = world.read(bpy.context.evaluated_depsgraph_get(), {})
     return found[0] + np.array(NORMALS) @ found[1:]
 
 
@@ -110,16 +110,16 @@ KINDS = {
 def test_light_is_eevees(scene, world, afterlight, kind):
     KINDS[kind](scene)
     scene.world.sun_threshold = 5 if kind == "with a sun" else 0
-    if kind == "with a sun":  # which is a lamp for EEVEE, and no part of its world's light
+    if kind == "with a sun":  # EEVEE makes the sun a light of its own, so it is not part of the world's light
         true = lit_by_eevee_without_sun(scene, afterlight.addon)
     else:
         true = lit_by_eevee(scene, afterlight.addon)
-    # EEVEE keeps this light in floats of 6, 6 and 5 bits.
+    # EEVEE stores this light in floats with 6, 6 and 5 bits of mantissa.
     assert (np.abs(said(world) - true) < true * (1 / 64, 1 / 64, 1 / 32) + 0.01 * true.mean()).all()
 
 
 def lit_by_eevee_without_sun(scene, addon):
-    """In a shell that holds the sun off, with its shadow, and nothing else of the world."""
+    """lit_by_eevee() in a shell that blocks only the sun, by its shadow."""
     bpy.ops.mesh.primitive_ico_sphere_add(radius=30, subdivisions=2)
     scene.world.use_sun_shadow = True
     return lit_by_eevee(scene, addon)
@@ -128,10 +128,10 @@ def lit_by_eevee_without_sun(scene, addon):
 def test_a_picture_is_looked_at_once_a_render(scene, world, monkeypatch):
     texture = surround(scene, picture())
     known, calls = {}, []
-    first = world.light(bpy.context.evaluated_depsgraph_get(), known)
+    first = world.read(bpy.context.evaluated_depsgraph_get(), known)
     monkeypatch.setattr(world, "harmonics", lambda *arguments: calls.append(1))
-    assert np.array_equal(world.light(bpy.context.evaluated_depsgraph_get(), known), first) and not calls
-    said_anew = world.light(bpy.context.evaluated_depsgraph_get(), {})
+    assert np.array_equal(world.read(bpy.context.evaluated_depsgraph_get(), known), first) and not calls
+    said_anew = world.read(bpy.context.evaluated_depsgraph_get(), {})
     assert calls and said_anew is None
     assert texture.image.size[0] == 128
 
@@ -177,11 +177,11 @@ def strange(scene, kind):
 )
 def test_what_is_not_known_is_left_alone(scene, world, kind):
     strange(scene, kind)
-    assert world.light(bpy.context.evaluated_depsgraph_get(), {}) is None
+    assert world.read(bpy.context.evaluated_depsgraph_get(), {}) is None
 
 
 def test_harmonics_of_a_known_sky(world):
-    """L = 1 + z has the irradiance pi (1 + 2/3 n.z), to the size of the pixels."""
+    """L = 1 + z has the irradiance pi (1 + 2/3 n.z), up to the size of the pixels."""
     up = ((np.arange(200) + 0.5) / 200 - 0.5) * np.pi
     radiance = np.repeat(np.repeat((1 + np.sin(up))[:, None, None], 400, 1), 3, 2)
     assert np.allclose(world.harmonics(radiance), [[1] * 3, [0] * 3, [0] * 3, [2 / 3] * 3], atol=1e-3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ticking the box, unticking it, and all that people do to a file in between. Nothing is rendered here."""
+"""Ticking the box, unticking it, and everything that people do to a file in between. Nothing is rendered."""
 
 import bpy
 import pytest
@@ -24,11 +24,6 @@ def scene(fresh):
     return box(fresh)
 
 
-@pytest.fixture
-def wiring(afterlight):
-    return afterlight.addon.compositor.setup
-
-
 def helpers():
     return [scene for scene in bpy.data.scenes if scene.render.engine == "AFTERLIGHT"]
 
@@ -39,24 +34,24 @@ def ours(tree):
 
 @pytest.mark.parametrize("kind", TREES)
 @pytest.mark.parametrize("compositing", [True, False])
-def test_unticking_leaves_the_file_as_it_was(scene, wiring, kind, compositing):
+def test_unticking_leaves_the_file_as_it_was(scene, addon, kind, compositing):
     TREES[kind](scene)
     scene.render.use_compositing = compositing
     scene.view_layers[0].use_pass_normal = True
     before = written_down()
     scene.afterlight.enabled = True
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert written_down() != before
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
 
 @pytest.mark.parametrize("kind", TREES)
-def test_connecting_twice_changes_nothing(scene, wiring, kind):
+def test_connecting_twice_changes_nothing(scene, addon, kind):
     TREES[kind](scene)
     scene.afterlight.enabled = True
     once = written_down()
-    wiring.connect(scene)
+    addon.compositor.setup.connect(scene)
     scene.afterlight.enabled = True
     assert not differences(once, written_down())
 
@@ -113,8 +108,8 @@ def test_a_pass_the_user_has_come_to_use_stays_on(scene):
     assert viewer.inputs["Image"].links[0].from_socket.name == "Depth"
 
 
-def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, wiring, afterlight, tmp_path):
-    """Faults 8: after that a node "was deleted", and the picture stayed plain."""
+def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, addon, afterlight, tmp_path):
+    """The fix used to report that a node "was deleted", and the image stayed plain."""
     tree = nested_tree(scene)
     for node in [node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers"]:
         tree.nodes.remove(node)
@@ -123,7 +118,7 @@ def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, wiring, aft
     (finding,) = afterlight.addon.diagnosis.checks.findings(scene)
     assert finding.fix == "RENDER_LAYERS" and "inside node groups" in finding.text
     bpy.ops.afterlight.mend(cure=finding.fix)
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     lit = read_rgb(render(scene, tmp_path / "lit.exr"))
     assert scene.afterlight.report == ""
     scene.afterlight.enabled = False
@@ -132,23 +127,23 @@ def test_a_picture_in_a_group_is_lit_when_the_cure_is_pressed(scene, wiring, aft
     assert lit.mean() > 1.1 * plain.mean()
 
 
-def test_a_compositor_that_uses_passes_only(scene, wiring):
-    """Faults 8: it was said that a node had been deleted."""
+def test_a_compositor_that_uses_passes_only(scene, addon):
+    """It used to be reported that a node was deleted."""
     tree = compositor(scene)
     picture = layers_node(tree, scene)
     scene.view_layers[0].use_pass_z = True
     tree.links.new(picture.outputs["Depth"], tree.nodes.new("NodeGroupOutput").inputs[0])
     scene.afterlight.enabled = True
-    (fault,) = wiring.faults(scene)
+    (fault,) = addon.compositor.faults.find(scene)
     assert "does not use the Image of any Render Layers node" in fault
     light = next(node for node in ours(tree))
     tree.links.new(light.outputs["Indirect"], tree.nodes["Group Output"].inputs[0])
-    assert not wiring.faults(scene), "the light alone is a use of it"
+    assert not addon.compositor.faults.find(scene), "the light alone is a use of it"
 
 
 @pytest.mark.parametrize("kind", ["none", "simple", "layered"])
-def test_the_link_of_the_image_is_missed_and_put_back(scene, wiring, afterlight, kind):
-    """It gave a black picture, and nobody said so."""
+def test_the_link_of_the_image_is_missed_and_put_back(scene, addon, afterlight, kind):
+    """A missing link used to give a black image without any message."""
     TREES[kind](scene)
     scene.afterlight.enabled = True
     tree = scene.compositing_node_group
@@ -161,12 +156,12 @@ def test_the_link_of_the_image_is_missed_and_put_back(scene, wiring, afterlight,
     (finding,) = afterlight.addon.diagnosis.checks.findings(scene)
     assert "no longer linked" in finding.text and finding.fix == "REPAIR"
     bpy.ops.afterlight.repair()
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
 
 
 @pytest.mark.parametrize("kind", ["none", "simple"])
 @pytest.mark.parametrize("doomed", ["add", "light", "both"])
-def test_deleting_our_nodes_is_noticed_and_repaired(scene, wiring, afterlight, kind, doomed):
+def test_deleting_our_nodes_is_noticed_and_repaired(scene, addon, afterlight, kind, doomed):
     TREES[kind](scene)
     scene.afterlight.enabled = True
     tree = scene.compositing_node_group
@@ -178,42 +173,42 @@ def test_deleting_our_nodes_is_noticed_and_repaired(scene, wiring, afterlight, k
     found = afterlight.addon.diagnosis.checks.findings(scene)
     only_the_user_knows = (kind, doomed) == ("simple", "add")  # Blender forgets the links of a deleted node
     assert found and {finding.fix for finding in found} == {"" if only_the_user_knows else "REPAIR"}
-    wiring.follow(scene)
-    assert wiring.faults(scene), "nodes that a user deletes must not come back by themselves"
+    addon.compositor.setup.follow(scene)
+    assert addon.compositor.faults.find(scene), "nodes that a user deletes must not come back by themselves"
     if kind == "simple" and doomed != "light":  # as the message asks
         for user in users:
             tree.links.new(picture.outputs["Image"], user)
     assert bpy.ops.afterlight.repair() == {"FINISHED"}
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert len([node for node in ours(tree) if node["afterlight"] != "plain"]) == 2
     scene.afterlight.enabled = False
     assert kind == "none" or not ours(tree)
 
 
-def test_deleting_the_helper_scene_is_noticed_and_repaired(scene, wiring):
+def test_deleting_the_helper_scene_is_noticed_and_repaired(scene, addon):
     before = written_down()
     scene.afterlight.enabled = True
     bpy.data.scenes.remove(helpers()[0])
-    assert wiring.faults(scene)
+    assert addon.compositor.faults.find(scene)
     bpy.ops.afterlight.repair()
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     after = written_down()
-    # The deleted scene's camera is the user's doing; nothing else may be left.
+    # The user deleted the scene without its camera, which stays; nothing else may be left.
     for kind in ("objects", "cameras"):
         after[kind] = {name: value for name, value in after[kind].items() if not name.startswith(".Afterlight")}
     assert not differences(before, after)
 
 
 @pytest.mark.parametrize("built_on", [False, True])
-def test_a_tree_of_ours_that_the_user_has_taken_out_of_use(scene, wiring, built_on):
+def test_a_tree_of_ours_that_the_user_has_taken_out_of_use(scene, addon, built_on):
     scene.afterlight.enabled = True
     tree = scene.compositing_node_group
     if built_on:
         tree.nodes.new("CompositorNodeBlur")
     scene.compositing_node_group = None
-    wiring.connect(scene)
-    assert (scene.compositing_node_group == tree) != built_on and not wiring.faults(scene)
+    addon.compositor.setup.connect(scene)
+    assert (scene.compositing_node_group == tree) != built_on and not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert len(bpy.data.node_groups) == int(built_on) and not built_on or not tree.keys() and not ours(tree)
 
@@ -236,7 +231,7 @@ def test_a_tree_that_the_user_has_taken_out_of_use_is_cleared_too(scene, kind, h
 
 @pytest.mark.parametrize("other_ticked", [False, True])
 def test_deleting_the_scene_takes_its_helper_along(scene, tmp_path, other_ticked):
-    """At the latest when the file is saved: while Blender evaluates another scene it can't go without a crash."""
+    """At the latest when the file is saved: deleting it while Blender evaluates another scene would crash."""
     other = bpy.data.scenes.new("Other")
     scene.afterlight.enabled = True
     other.afterlight.enabled = other_ticked
@@ -248,23 +243,23 @@ def test_deleting_the_scene_takes_its_helper_along(scene, tmp_path, other_ticked
     assert not [each for each in bpy.data.node_groups if ours(each) or each.keys()]
 
 
-def test_view_layers_added_removed_and_renamed(scene, wiring):
+def test_view_layers_added_removed_and_renamed(scene, addon):
     tree = layered_tree(scene)
     scene.afterlight.enabled = True
     helper = helpers()[0]
     scene.view_layers[1].name = "Renamed"
     scene.view_layers.new("Third")
-    wiring.follow(scene)
+    addon.compositor.setup.follow(scene)
     assert [layer.name for layer in helper.view_layers] == [layer.name for layer in scene.view_layers]
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert {node.layer for node in ours(tree) if node["afterlight"] == "light"} == {"ViewLayer", "Renamed"}
     assert [layer.use for layer in helper.view_layers] == [True, True, False], "an unused layer costs nothing"
     scene.view_layers.remove(scene.view_layers["Third"])
-    wiring.follow(scene)
-    assert not wiring.faults(scene)
+    addon.compositor.setup.follow(scene)
+    assert not addon.compositor.faults.find(scene)
 
 
-def test_edits_are_followed_by_themselves(scene, wiring):
+def test_edits_are_followed_by_themselves(scene, addon):
     layered_tree(scene)
     scene.afterlight.enabled = True
     scene.name = "Shot 7"
@@ -276,23 +271,23 @@ def test_edits_are_followed_by_themselves(scene, wiring):
 
 @pytest.mark.parametrize("how", ["LINK_COPY", "FULL_COPY", "EMPTY", "NEW"])
 @pytest.mark.parametrize("kind", ["none", "layered"])
-def test_a_copied_scene_gets_a_helper_of_its_own(scene, wiring, how, kind):
+def test_a_copied_scene_gets_a_helper_of_its_own(scene, addon, how, kind):
     TREES[kind](scene)
     scene.afterlight.enabled = True
     bpy.ops.scene.new(type=how)
     copy = next(each for each in bpy.data.scenes if each not in helpers() and each != scene)
-    wiring.follow(copy)
+    addon.compositor.setup.follow(copy)
     assert copy.afterlight.enabled == (how != "NEW")
-    assert wiring.source(scene.afterlight.helper) == scene and not wiring.faults(scene)
+    assert addon.host.roles.lit_scene(scene.afterlight.helper) == scene and not addon.compositor.faults.find(scene)
     if copy.afterlight.enabled:
-        assert wiring.source(copy.afterlight.helper) == copy and not wiring.faults(copy)
+        assert addon.host.roles.lit_scene(copy.afterlight.helper) == copy and not addon.compositor.faults.find(copy)
         copy.afterlight.enabled = False
         assert not copy.compositing_node_group or not ours(copy.compositing_node_group)
-    assert not wiring.faults(scene)
+    assert not addon.compositor.faults.find(scene)
     assert len(helpers()) == 1
 
 
-def test_saved_and_loaded(scene, wiring, tmp_path):
+def test_saved_and_loaded(scene, addon, tmp_path):
     simple_tree(scene)
     scene.afterlight.samples = 200
     before = written_down()
@@ -301,12 +296,12 @@ def test_saved_and_loaded(scene, wiring, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
     scene = bpy.context.scene
-    assert scene.afterlight.enabled and scene.afterlight.samples == 200 and not wiring.faults(scene)
+    assert scene.afterlight.enabled and scene.afterlight.samples == 200 and not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
 
-def test_undo_and_redo(scene, wiring):
+def test_undo_and_redo(scene, addon):
     simple_tree(scene)
     bpy.ops.ed.undo_push(message="before")
     before = written_down()
@@ -317,7 +312,7 @@ def test_undo_and_redo(scene, wiring):
     assert not scene.afterlight.enabled and not differences(before, written_down())
     bpy.ops.ed.redo()
     scene = bpy.context.scene
-    assert scene.afterlight.enabled and not wiring.faults(scene)
+    assert scene.afterlight.enabled and not addon.compositor.faults.find(scene)
     scene.afterlight.enabled = False
     assert not differences(before, written_down())
 
