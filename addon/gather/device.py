@@ -54,8 +54,8 @@ class ThisThread:
         call()
 
 
-executor: Executor = ThisThread()
-_unsettled: Texture | None = None  # the texture that was written last, until settle() has waited for it
+executor: Executor = ThisThread()  # global, as Blender has one GPU context for Python
+_unsettled: Texture | None = None  # the texture that was written last, until settle() waits for it; global like it
 
 
 def use_executor(new: Executor) -> None:
@@ -236,7 +236,7 @@ def wait(target: Texture) -> None:
     read(probed)
 
 
-_band: dict[str, float] = {}  # samples, by pass
+_band: dict[str, float] = {}  # samples, by pass; global, since the GPU is as fast in the next frame
 
 
 def band(name: str) -> float:

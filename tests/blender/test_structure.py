@@ -20,6 +20,7 @@ OF_THE_GATHER = {
     "pathlib",
     "time",
     "typing",
+    "__future__",
     "concurrent",
     "re",
 }

@@ -102,7 +102,7 @@ def draw_alone(count):
 
     import gpu
     import numpy as np
-    from bl_ext.user_default.afterlight.addon.viewport import region_light
+    from bl_ext.user_default.afterlight.addon.viewport import offscreen, region_light
 
     window, editor, shown = area("VIEW_3D")
     space = editor.spaces.active
