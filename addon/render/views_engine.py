@@ -16,7 +16,7 @@ from ..views import main_view, placement, ray_cast
 from . import job as jobs
 
 
-class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
+class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
     bl_idname = engines.VIEWS
     bl_label = "Afterlight's views (used by its helper scenes)"
     bl_use_postprocess = True  # without it Blender does not ask engines in Python for scenes of the compositor
@@ -142,10 +142,10 @@ class AfterlightScout(report.Reporter, bpy.types.RenderEngine):
 
 
 def register():
-    bpy.utils.register_class(AfterlightScout)
+    bpy.utils.register_class(AfterlightViewsEngine)
 
 
 def unregister():
     """When the render ends, if one is under way: Blender frees the engines of all renders when any engine's class
     goes."""
-    main_thread.after_render(lambda: bpy.utils.unregister_class(AfterlightScout))
+    main_thread.after_render(lambda: bpy.utils.unregister_class(AfterlightViewsEngine))

@@ -4,7 +4,7 @@ see.
 
     .venv/bin/python -m benchmarks.studies.angle_study [--seeds 6] [--size 256x144]
 
-Prints a table: placement.LEAST_COSINE, the indirect light of a frame over Cycles' (mean and standard deviation over
+Prints a table: placement.MIN_VIEW_COSINE, the indirect light of a frame over Cycles' (mean and standard deviation over
 seeds, each with views of its own), and how many views there were."""
 
 import argparse
@@ -32,7 +32,7 @@ def study(seeds, size, afterlight):
     _, plain = candidates.written(scene)
     views, placement = afterlight.addon.compositor.view_scenes, afterlight.addon.views.placement
     scene.afterlight.method, scene.afterlight.enabled = "RADIOSITY", True
-    print("| `LEAST_COSINE` | energy, mean | standard deviation | views |\n|---|---:|---:|---|")
+    print("| `MIN_VIEW_COSINE` | energy, mean | standard deviation | views |\n|---|---:|---:|---|")
     for cosine in (0.0, 0.05, 0.1, 0.2, 0.3):
         placement.MIN_VIEW_COSINE = cosine
         energies, counts = [], []

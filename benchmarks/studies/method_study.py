@@ -39,7 +39,7 @@ def base_total(passes, camera, chosen):
 
 
 def same_at_each_level(level, samples, texels):
-    """What region.samples_at() would be without doubling."""
+    """What pyramid.samples_at() would be without doubling."""
     return min(samples, texels) if samples else texels
 
 

@@ -406,7 +406,7 @@ def ways(cases):
     """What the depth maps take for blocked and for free, of ways between patches that face each other."""
     print(
         "\n| `SHADOW_STEPS` | `THICKNESS` | `MAX_GAP_LEFT` | "
-        + " | ".join(f"{case.room.name}: free ways blocked, hidden ways free" for case in cases)
+        + " | ".join(f"{case.room.name}: false blocked, false free" for case in cases)
         + " |\n"
         + "|---" * (len(cases) + 3)
         + "|"
@@ -440,7 +440,7 @@ def slope(cases):
     cases, usual = [*cases, Case(PILLARS, cases[0].light)], views_64.MAX_GAP_SLOPE
     print(
         "\n| `MAX_GAP_SLOPE` | "
-        + " | ".join(f"{case.room.name}: free ways blocked, hidden ways free" for case in cases)
+        + " | ".join(f"{case.room.name}: false blocked, false free" for case in cases)
         + " |\n"
         + "|---" * (len(cases) + 1)
         + "|"
@@ -456,7 +456,7 @@ def slope(cases):
 
 
 def misjudged(case, steps, count=20_000):
-    """(share of the free ways taken for blocked, share of the hidden ones taken for free)"""
+    """(share of the free segments taken for blocked, share of the blocked ones taken for free)"""
     rng = np.random.default_rng(1)
     place, normal, area = case.room.patches(case.room.patch / 4)
     start, end = rng.choice(len(place), (2, count), p=area / area.sum())
@@ -486,7 +486,7 @@ TABLES = {
     "continuous": constant("MAX_GAP_LEFT", (0.1, 0.2, 0.3, 0.5)),
     "near": constant("NEAR_SHARE", (0, 2, 4, 8)),
     "tolerance": constant("FREE_TOLERANCE", (1.0, 1.0005, 1.002, 1.01)),
-    "steepest": constant("STEEPEST", (1.0, 1.05, 1.1, 1.3, 2.0)),
+    "steepest": constant("MAX_REACH", (1.0, 1.05, 1.1, 1.3, 2.0)),
     "ways": ways,
     "slope": slope,
     "setup": setup,

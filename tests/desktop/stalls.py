@@ -31,8 +31,8 @@ WATCHED = {
 OF_METHOD = {
     "PAPER": {name: ("gather.paper", name) for name in ("upload", "pack", "merge", "gather", "upsample", "composite")},
     "RADIOSITY": {
-        "place views": ("render.views_engine", "AfterlightScout", "_place"),
-        "save views": ("compositor.view_scenes", "save"),
+        "place views": ("render.views_engine", "AfterlightViewsEngine", "_place"),
+        "save views": ("render.frames", "RenderedFrame", "_save_views"),
     }
     | {"upload": ("gather.records", "upload")}
     | {
