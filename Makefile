@@ -21,11 +21,15 @@ desktop-test: package ## Afterlight in a full Blender's window, as a person work
 package: setup   ## dist/afterlight-<version>.zip, to be installed in Blender
 	$(python) tools/extension.py package
 
-demo: package    ## before and after pictures of a sample scene; make demo DEMO=--all for all of them
+demo: package    ## before and after pictures of a sample scene, in build/demo; make demo DEMO=--all for all of them
 	$(python) sample_blends/demo.py $(DEMO)
 
-clip: package    ## moving shots by EEVEE alone and with Afterlight, as animated pictures; make clip CLIP=pillars for one
+clip: package    ## moving shots by EEVEE alone and with Afterlight, in build/clip; make clip CLIP=pillars for one
 	$(python) sample_blends/clip.py $(CLIP)
+
+pictures: package ## the pictures and the clip that the README shows, again
+	$(python) sample_blends/demo.py cornell_box sunlit_room emissive_sign plastics --webp docs/pictures
+	$(python) sample_blends/clip.py creature --folder docs/pictures
 
 samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
@@ -40,7 +44,7 @@ accuracy: package ## error beside EEVEE's own GI and Cycles, and where it comes 
 	$(python) -m benchmarks.accuracy --out docs/measured/accuracy --page docs/measured/accuracy.md
 
 motion: package  ## error, flicker, lag and trails in moving shots; make motion MOTION='pillars --frames 1-8' for less
-	$(python) -m benchmarks.motion --page docs/measured/motion.md --sheet build/motion/sheet.png $(MOTION)
+	$(python) -m benchmarks.motion --page docs/measured/motion.md --sheet build/motion/sheet.webp $(MOTION)
 
 soak: package    ## 300 frames in one process: does memory grow, does anything stay behind? Half an hour; needs Linux
 	$(python) -m benchmarks.soak
@@ -52,4 +56,4 @@ clean:           ## remove what was made, but for .venv and the downloaded wheel
 	rm -rf dist build .pytest_cache .hypothesis .ruff_cache .mypy_cache
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test lint desktop-test package demo clip samples bench speed accuracy motion soak fuzz clean
+.PHONY: help setup test lint desktop-test package demo clip pictures samples bench speed accuracy motion soak fuzz clean

@@ -3,7 +3,7 @@
 
     .venv/bin/python sample_blends/clip.py [SHOT ...] [--frames 1-24] [--size 480x270] [--samples 16] [--preset
     production]
-        [--folder docs/pictures]
+        [--folder build/clip]
 
 Writes <shot>.webp, EEVEE alone on the left; lossy enough to have less than 3 MB."""
 
@@ -18,9 +18,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))  # Blender's -P does not do it
 
 import session
-from demo import GAP, PICTURES, picture_size
+from demo import GAP, picture_size
 
 SHOTS = HERE / "moving"
+CLIPS = HERE.parent / "build" / "clip"
 LARGEST = 3_000_000  # bytes; the README shows them
 QUALITIES = 90, 80, 70, 60, 45, 30
 
@@ -114,7 +115,7 @@ def main():
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's samples a pixel; 16")
     parser.add_argument("--preset", default="production", help="Afterlight's; production")
     parser.add_argument("--rate", type=int, default=12, help="frames a second; 12, half as fast as life")
-    parser.add_argument("--folder", type=Path, default=PICTURES, help="where the clips go; docs/pictures without")
+    parser.add_argument("--folder", type=Path, default=CLIPS, help="where the clips go; build/clip without")
     options = parser.parse_args(session.arguments())
     if missing := [name for name in options.names if name not in shots]:
         parser.error(f"there is no {missing[0]}.blend in {SHOTS}; 'make samples' writes the shots")

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render sample scenes by EEVEE alone and with Afterlight, and put the two pictures side by side.
 
-    .venv/bin/python sample_blends/demo.py [NAME ...] [--all] [--size 640x360] [--samples 16] [--folder docs/pictures]
+    .venv/bin/python sample_blends/demo.py [NAME ...] [--all] [--size 640x360] [--samples 16]
+        [--folder build/demo] [--webp docs/pictures]
 
-Writes <name>_eevee.png, <name>_afterlight.png, and <name>.png with the first on its left."""
+Writes <name>_eevee.png, <name>_afterlight.png, and <name>.png with the first on its left; the last also as a small
+WebP, where a folder for that is given (it needs Pillow)."""
 
 import argparse
 import sys
@@ -15,7 +17,8 @@ sys.path.insert(0, str(HERE))  # Blender's -P does not do it
 
 import session
 
-PICTURES = HERE.parent / "docs" / "pictures"
+PICTURES = HERE.parent / "build" / "demo"
+QUALITY = 88  # of WebP: nobody sees a difference
 GAP = 8  # pixels between the two pictures
 
 
@@ -71,6 +74,14 @@ def show(name, folder, size, samples):
     return both
 
 
+def as_webp(path, target):
+    """Write a PNG as a small WebP."""
+    from PIL import Image
+
+    target.parent.mkdir(parents=True, exist_ok=True)
+    Image.open(path).convert("RGB").save(target, "WEBP", quality=QUALITY, method=6)
+
+
 def picture_size(text):
     width, height = (int(number) for number in text.split("x"))
     return width, height
@@ -83,7 +94,8 @@ def main():
     parser.add_argument("--all", action="store_true", help="every sample")
     parser.add_argument("--size", type=picture_size, default=(640, 360), metavar="WxH", help="640x360 without")
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's samples a pixel; 16 without")
-    parser.add_argument("--folder", type=Path, default=PICTURES, help="where the pictures go; docs/pictures without")
+    parser.add_argument("--folder", type=Path, default=PICTURES, help="where the pictures go; build/demo without")
+    parser.add_argument("--webp", type=Path, metavar="FOLDER", help="where a WebP of each goes; nowhere without")
     options = parser.parse_args(session.arguments())
     names = samples if options.all else options.names or ["cornell_box"]
     if missing := [name for name in names if name not in samples]:
@@ -93,6 +105,9 @@ def main():
     folder = options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     pictures = [show(name, folder, options.size, options.samples) for name in names]
+    if options.webp:
+        for path in pictures:
+            as_webp(path, options.webp / f"{path.stem}.webp")
     print("\nEEVEE alone on the left, with Afterlight on the right:")
     for path in pictures:
         print(f"  {path}")

@@ -41,7 +41,7 @@ def measure(path, options, afterlight):
         "tables": [table(truth, rendered, kind, mask) for kind, mask in masks.items()],
         "samples": {str(number): 2 * each.samples for number, each in truth.of.items()},
     }
-    sheet = options.out / f"{options.name}.png"
+    sheet = options.out / f"{options.name}.webp"
     accuracy_report.sheet(rendered, truth.indirect(truth.longest), truth.final(truth.longest), surface, sheet)
     if not options.no_causes:
         entry["causes"] = causes_of(afterlight, scene, plain, truth, masks["diffuse"])

@@ -19,10 +19,11 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 
+from .. import figures
 from . import metrics
 
 PICTURES = {"indirect": "Indirect light", "final": "Final image"}
-PLOT, STUDY = "error_against_cost.png", "eevee_study.json"
+PLOT, STUDY = "error_against_cost.webp", "eevee_study.json"
 CURVES = {"EEVEE": "s", "EEVEE ray tracing": "D", "Afterlight": "o", "Cycles": "^"}
 COLORS = dict(zip(CURVES, ("0.35", "tab:blue", "tab:orange", "tab:green"), strict=True))
 SHEET_GROUPS = {"EEVEE", "EEVEE ray tracing", "Afterlight"}
@@ -108,7 +109,7 @@ def average(values):
 def scene_parts(scene, found, folder):
     if "tables" not in scene:
         return [f"Not measured: {scene.get('skipped') or scene.get('failed')}."]
-    parts = [f"![Contact sheet]({folder}/{scene['name']}.png)"]
+    parts = [f"![Contact sheet]({folder}/{scene['name']}.webp)"]
     for one in scene["tables"]:
         what = (
             "Diffuse surfaces"
@@ -240,8 +241,7 @@ def plot(found, path):
     axes.set_ylabel(f"relative L1 of the indirect light, against Cycles with {found['bounces']} bounces")
     axes.grid(True, which="both", alpha=0.2)
     axes.legend()
-    figure.savefig(path, metadata={"Software": None})
-    plt.close(figure)
+    figures.save(figure, path, exact=True)
 
 
 def sheet(rendered, indirect, final, surface, path):
@@ -267,8 +267,7 @@ def sheet(rendered, indirect, final, surface, path):
     ):
         each.set_title(title, fontsize=9)
     figure.colorbar(drawn, ax=axes[:, 2], shrink=0.4, extend="both")
-    figure.savefig(path, metadata={"Software": None})
-    plt.close(figure)
+    figures.save(figure, path)
 
 
 def exposure(colors):

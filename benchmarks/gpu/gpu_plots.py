@@ -10,6 +10,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
+from .. import figures
+
 STARTS = {1: "Full", 2: "Half", 4: "Quarter"}
 
 
@@ -19,12 +21,11 @@ def setting(run):
 
 
 def draw(name, found, path):
-    """Draw one of PLOTS into a PNG file, with the machine as its title."""
+    """Draw one of PLOTS into a file, with the machine as its title."""
     figure, axes = plt.subplots(figsize=(7, 4.2), dpi=110, layout="constrained")
     PLOTS[name][1](axes, found)
     axes.set_title(found["machine"]["renderer"], fontsize=10)
-    figure.savefig(path, metadata={"Software": None})
-    plt.close(figure)
+    figures.save(figure, path, exact=True)
 
 
 def _passes(axes, found):

@@ -48,7 +48,7 @@ def write(page, files=()):
     for file in files or sorted(folder.glob("*.json")):
         parts[file.stem] = found = read(file)
         for name in PLOTS:
-            draw(name, found, folder / f"{file.stem}-{name}.png")
+            draw(name, found, folder / f"{file.stem}-{name}.webp")
     page.write_text(text(parts, folder.name))
 
 
@@ -249,7 +249,7 @@ def _size(run):
 
 
 def _picture(plots, name):
-    return f"![{PLOTS[name][0]}]({plots}-{name}.png)"
+    return f"![{PLOTS[name][0]}]({plots}-{name}.webp)"
 
 
 def _ms(seconds):

@@ -4,7 +4,7 @@ Cycles.
 
     .venv/bin/python -m benchmarks.motion [SHOT or FILE.blend ...] [--ways eevee,production,production+history]
     [--frames 1-24]
-        [--page FILE.md] [--sheet FILE.png] [--sheet-frame 13] [--farm]
+        [--page FILE.md] [--sheet FILE.webp] [--sheet-frame 13] [--farm]
 
 Each way renders all frames in one job, `bpy.ops.render.render(animation=True)`, to files, as a user does: what
 Afterlight keeps from frame to frame lives no longer. The truth is Cycles with four diffuse bounces, frame by frame, in
@@ -204,7 +204,7 @@ def parse(arguments):
     parser.add_argument("--accumulate", type=int, help="scene.afterlight.accumulate; its default without")
     parser.add_argument("--page", type=Path, help="the table in Markdown")
     parser.add_argument(
-        "--sheet", type=Path, help="contact sheet, PNG; with several shots their names are put before it"
+        "--sheet", type=Path, help="contact sheet, WebP; with several shots their names are put before it"
     )
     parser.add_argument(
         "--sheet-frame", type=int, help="the frame that it shows; without, the middle one, or the one after a switch"

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .. import figures
 from ..accuracy import metrics
 from . import motion_measures as measures
 
@@ -106,7 +107,7 @@ class Shot:
         return f"{more / self.mean:.3f} (frame {self.first + frame}, row {row}, column {column})"
 
     def sheet(self, path, number=None):
-        """PNG: for one frame the light by each way, its error, and the error's change from the frame before where that
+        """WebP: for one frame the light by each way, its error, and the error's change from the frame before where that
         shows the same surface."""
         import matplotlib
 
@@ -142,9 +143,7 @@ class Shot:
             each.set_yticks([])
             each.set_facecolor("0.8")
         figure.suptitle(f"{self.name}, frame {self.first + frame}", fontsize=9)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=110)
-        pyplot.close(figure)
+        figures.save(figure, path, dpi=110)
 
 
 def page(options, rows):

@@ -21,7 +21,7 @@ import numpy as np
 
 import session
 
-from .. import ROOT
+from .. import ROOT, figures
 from ..accuracy import candidates, metrics, references
 from ..cost import bench
 from . import radiosity_study
@@ -165,7 +165,7 @@ def study(path, wanted, afterlight):
                 add(name or "as it is", picture + world, seconds)
     scene.afterlight.enabled = False
     if wanted.pictures:
-        save(wanted.pictures / f"glossy_{path.stem}.png", pictures, truth.mean[mask].mean())
+        save(wanted.pictures / f"glossy_{path.stem}.webp", pictures, truth.mean[mask].mean())
     return rows
 
 
@@ -201,9 +201,7 @@ def save(path, pictures, mean):
         axis.imshow(np.clip(picture / (4 * mean), 0, 1) ** (1 / 2.2))
         axis.set_title(name, fontsize=9)
     figure.tight_layout()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=90)
-    pyplot.close(figure)
+    figures.save(figure, path, dpi=90)
 
 
 def combinations(texts):

@@ -270,6 +270,6 @@ def test_a_run_of_it_all(shot, tmp_path):
     assert sum(gains) == pytest.approx(total, abs=1e-6)
     page = (out / "accuracy.md").read_text()
     assert "Not measured" in page and "Afterlight, Paper" in page
-    for name in ("good.png", "error_against_cost.png"):
+    for name in ("good.webp", "error_against_cost.webp"):
         assert (out / name).stat().st_size > 5000
     assert good.read_bytes() == before

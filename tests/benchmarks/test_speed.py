@@ -193,7 +193,7 @@ def test_the_page_holds_every_number(found):
         "| 640x360 | 14 | 14 to 14 | 60.8 |",
         "| 1280x720 | 141 | 141 to 141 | 153 |",
         "A processor (8 cores)",
-        "(speed/a-gpu-pixels.png)",
+        "(speed/a-gpu-pixels.webp)",
     ):
         assert line in page
 
@@ -206,7 +206,7 @@ def test_machines_stand_side_by_side(found, tmp_path):
     gpu_report.write(tmp_path / "speed.md")
     page = (tmp_path / "speed.md").read_text()
     assert page.index("## one") < page.index("## two")
-    plots = sorted(tmp_path.glob("speed/*.png"))
+    plots = sorted(tmp_path.glob("speed/*.webp"))
     assert len(plots) == 8 and all(5_000 < plot.stat().st_size < 150_000 for plot in plots)
     assert all(f"(speed/{plot.name})" in page for plot in plots)
 
