@@ -19,7 +19,7 @@ from statistics import median
 
 import session
 
-from .. import ROOT
+from .. import ROOT, figures
 from . import accuracy_report, candidates, metrics, references
 
 KINDS = "indirect", "final"
@@ -198,6 +198,7 @@ def measure_all(options):
     return {
         "machine": machine,
         "command": options.command,
+        "commit": figures.commit(),
         "size": options.size,
         "bounces": options.bounces,
         "samples": options.samples,

@@ -30,10 +30,19 @@ SHEET_GROUPS = {"EEVEE", "EEVEE ray tracing", "Afterlight"}
 
 
 def write(path, page):
-    """The page `page` and the plot from an accuracy.json, whose folder holds the pictures."""
+    """The page `page`, a page a scene and the plot from an accuracy.json, whose folder holds the pictures."""
     found, folder = json.loads(path.read_text()), path.parent
     if measured(found):
         plot(found, folder / PLOT)
+    for scene in found["scenes"]:
+        text = "\n\n".join(
+            [
+                f"# {scene['name']}",
+                f"A scene of [Accuracy]({os.path.relpath(page, folder)}), which explains the terms.",
+                *scene_parts(scene, found),
+            ]
+        )
+        (folder / f"{scene['name']}.md").write_text(text + "\n")
     study = json.loads((folder / STUDY).read_text()) if (folder / STUDY).exists() else None
     page.write_text(markdown(found, os.path.relpath(folder, page.parent), study))
 
@@ -43,35 +52,47 @@ def measured(found):
 
 
 def markdown(found, folder, study=None):
-    """The whole page. folder: of the pictures, seen from the page."""
-    size = "{} x {}".format(*found["size"])
+    """The page. folder: of the pictures and of the scenes' pages, seen from the page."""
     parts = [
         "# Accuracy",
-        "How close EEVEE, its own ray tracing and Afterlight come to Cycles. Measured by",
+        f"The error of EEVEE, its ray tracing and Afterlight against Cycles with {found['bounces']} diffuse "
+        "bounces, at "
+        f"{found['size'][0]} x {found['size'][1]} and {found['samples']} EEVEE samples. Measured at commit "
+        f"{found.get('commit', 'before 0.4.0, see the page in the history')} on {found['machine']} by",
         f"    {found['command']}",
-        f"at {size}, with {found['samples']} EEVEE samples and {found['bounces']} diffuse bounces in the reference, on "
-        f"{found['machine']}. Numbers: [accuracy.json]({folder}/accuracy.json).",
-        "*Indirect light* is bounced diffuse light, albedo included; light that meshes send directly belongs to it, as "
-        "EEVEE has none of it as direct light, and so does the direct light of the world, of which EEVEE has too much. "
-        "Afterlight's is what it added to the picture, and the world's light in EEVEE's. *Energy* is the mean over "
-        "the reference's, *relative L1* the mean difference over the reference's mean, *relMSE* the mean of squared "
-        f"difference over squared reference + {metrics.EPSILON} (both over the reference's mean), *99.9 %* the "
-        "ratio of "
-        "those percentiles, *HDR-FLIP* the error that an eye sees, *cost* the frame's seconds over plain EEVEE's "
-        "beside "
-        "it. Only surfaces count, no background.",
-        f"The reference is Cycles in two independent halves, whose difference is its noise. A number under "
-        f"{found['clearly']} times the noise is refused; what stands with a < is what the true error is at most, "
-        "and before it what it is about, if the "
-        "noise's share is told by how much larger the error is against each half alone (`metrics.l1_without_noise`).",
+        "- *Indirect light*: bounced diffuse light, albedo included, and the direct light of meshes and world. "
+        "Afterlight's is what it adds to the picture, plus the world's light in EEVEE's.\n"
+        "- *Energy*: mean over the reference's. *Relative L1*: mean difference over the reference's mean. "
+        "*relMSE*: mean "
+        f"of squared difference over squared reference + {metrics.EPSILON}. *99.9 %*: ratio of those percentiles. "
+        "*HDR-FLIP*: the error as an eye sees it. *Cost*: seconds of a frame over plain EEVEE's beside it.\n"
+        "- The reference is two independent halves, whose difference is its noise. Errors under "
+        f'{found["clearly"]} times the noise are refused; "a, < b" is an estimate and an upper bound.',
     ]
     if measured(found):
-        parts += [f"![Error against cost]({folder}/{PLOT})", *means(found)]
-    for scene in found["scenes"]:
-        parts += [f"## {scene['name']}", *scene_parts(scene, found, folder)]
+        parts += [f"![Error against cost]({folder}/{PLOT})", *means(found), *by_scene(found, folder)]
+    if missing := [scene for scene in found["scenes"] if "tables" not in scene]:
+        parts += ["\n".join(f"- {scene['name']}: {not_measured(scene)}" for scene in missing)]
     if study:
         parts += study_parts(study)
     return "\n\n".join(parts) + "\n"
+
+
+def by_scene(found, folder):
+    """A row a scene: relative L1 of the indirect light by each way, and the way to the scene's own page."""
+    rows = []
+    for scene in measured(found):
+        (one,) = [one for one in scene["tables"] if one["surface"] == "diffuse"][:1] or [None]
+        errors = {row["name"]: cells(row, "indirect")[2] for row in one["rows"]} if one else {}
+        rows.append((f"[{scene['name']}]({folder}/{scene['name']}.md)", errors))
+    names = [name for name in dict.fromkeys(name for _, errors in rows for name in errors) if "Cycles, " not in name]
+    return [
+        "## Scenes",
+        "Relative L1 of the indirect light on diffuse surfaces. Each scene has a page with all numbers, a "
+        "contact sheet "
+        "and the causes of the error of the preset Paper.",
+        grid(["scene", *names], [[link, *(errors.get(name, "–") for name in names)] for link, errors in rows]),
+    ]
 
 
 def means(found):
@@ -106,10 +127,15 @@ def average(values):
     return None if None in values else mean(values)
 
 
-def scene_parts(scene, found, folder):
+def not_measured(scene):
+    return f"Not measured: {scene.get('skipped') or scene.get('failed')}."
+
+
+def scene_parts(scene, found):
+    """The paragraphs of a scene's own page, which lies beside its contact sheet."""
     if "tables" not in scene:
-        return [f"Not measured: {scene.get('skipped') or scene.get('failed')}."]
-    parts = [f"![Contact sheet]({folder}/{scene['name']}.webp)"]
+        return [not_measured(scene)]
+    parts = [f"![Contact sheet]({scene['name']}.webp)"]
     for one in scene["tables"]:
         what = (
             "Diffuse surfaces"
