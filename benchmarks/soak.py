@@ -21,6 +21,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from . import figures
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "measured" / "soak.md"
 WARM_UP = 2  # times through the mix before memory counts: shaders, caches, Python's own
@@ -300,10 +302,11 @@ def page(ticked, unticked, command):
         [
             "# Does anything stay behind?",
             "",
-            f"Made by `{command}` (`make soak`) on software OpenGL, where the process's memory is the GPU's as well.",
+            f"Made by `{command}` (`make soak`) at commit {figures.commit()} "
+            "on software OpenGL, where the process's memory is the GPU's as well.",
             "",
             f"{len(ticked['resident'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",
-            "[benchmarks/soak.py](../benchmarks/soak.py)). Sizes, settings, compositors, one view layer and two;",
+            "[benchmarks/soak.py](../../benchmarks/soak.py)). Sizes, settings, compositors, one view layer and two;",
             "ticked and unticked, lit, lit again without EEVEE, cancelled, refused for ray tracing, and without "
             "a GPU. The",
             "other process renders the same with the box never ticked: what grows there is Blender's.",

@@ -42,6 +42,7 @@ class Measured:
     size: tuple  # of the timed frames, pixels
     machine: str
     command: str
+    commit: str  # that was measured
     radius: int  # texels: the default, for the frames of these four
     first: dict  # stages of the first lit frame
     stages: list  # of the lit frames after it
@@ -141,7 +142,7 @@ def page(measured):
                 "# Speed and memory",
                 f"`{measured.title}` at {_size(measured.size)}, measured by",
                 f"    {measured.command}",
-                f"on {measured.machine}.",
+                f"on {measured.machine}, at commit {measured.commit}.",
                 "Seconds are on the clock, unless the column says otherwise: processor seconds are those of all cores "
                 "together. On a software GPU they contain the GPU's work, and a frame whose two columns do not "
                 "move together "

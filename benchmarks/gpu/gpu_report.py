@@ -71,7 +71,8 @@ def text(parts, folder):
         "\n\n".join(
             [
                 "# Speed of the light alone",
-                "The add-on's own code and shader files on a bare OpenGL context, without Blender, on a frame "
+                "The method Paper: the add-on's own code and shader files on a bare OpenGL context, without "
+                "Blender, on a frame "
                 "made by numpy "
                 "(`benchmarks/gpu/room.py`). Times are medians. What a frame costs inside Blender is in "
                 "[bench.md](bench.md). "
@@ -96,7 +97,8 @@ def part(found, plots):
         [
             f"## {machine['renderer']}",
             f"{machine['vendor']}, OpenGL {machine['version']}; processor {machine['processor']} ({machine['cores']} "
-            f"cores). GPU times are from {machine['timer']}. Measured by `{found['command']}`.",
+            f"cores). GPU times are from {machine['timer']}. Measured by `{found['command']}` at commit "
+            f"{found['commit']}.",
             *(["With `--quick`: few and small frames."] if found["quick"] else []),
             f"- {verdict(found)[0]}",
             "### A frame, pass by pass",

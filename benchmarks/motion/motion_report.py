@@ -151,6 +151,10 @@ def page(options, rows):
     width, height = options.size
     return "\n".join(
         [
+            "# Moving shots",
+            "",
+            f"Measured at commit {figures.commit()} by",
+            "",
             f"`{options.command}`",
             "",
             f"{width} x {height}, EEVEE with {options.samples} samples, Cycles with {2 * options.truth_samples} "

@@ -5,7 +5,10 @@ see.
     .venv/bin/python -m benchmarks.studies.angle_study [--seeds 6] [--size 256x144]
 
 Prints a table: placement.MIN_VIEW_COSINE, the indirect light of a frame over Cycles' (mean and standard deviation over
-seeds, each with views of its own), and how many views there were."""
+seeds, each with views of its own), and how many views there were.
+
+The tables in docs/blender/views.md are of commit 359e2bd (25 November 2026), unless the page says otherwise.
+"""
 
 import argparse
 

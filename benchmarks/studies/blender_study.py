@@ -4,7 +4,10 @@
     .venv/bin/python -m benchmarks.studies.blender_study
 
 Prints two tables: the mean of EEVEE's Diffuse Direct pass under its ray tracing settings, and the time to save and
-read all passes of a 1280x720 frame with one part a pass and with one part in all (medians of 5)."""
+read all passes of a 1280x720 frame with one part a pass and with one part in all (medians of 5).
+
+The tables in docs/blender/rendering.md are of commit 12b7a92 (23 November 2026), unless the page says otherwise.
+"""
 
 import statistics
 import time

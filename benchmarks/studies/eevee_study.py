@@ -3,7 +3,10 @@
 
     .venv/bin/python -m benchmarks.studies.eevee_study [FILE.blend ...] [--out FILE.json] [--size 160x90]
 
-Writes the relative L1 error of the indirect light of each scene, by settings, for accuracy_report to show."""
+Writes the relative L1 error of the indirect light of each scene, by settings, for accuracy_report to show.
+
+The tables in docs/measured/accuracy.md are of commit f5da531 (25 November 2026), unless the page says otherwise.
+"""
 
 import argparse
 import json

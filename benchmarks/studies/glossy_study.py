@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The light off glossy surfaces beside Cycles' and beside EEVEE's ray tracing.
 
-    .venv/bin/python -m benchmarks.studies.glossy_study [FILE.blend ...] [--samples 256] [--size 320x180] [--pictures
-    FOLDER] .venv/bin/python -m benchmarks.studies.glossy_study --constants MARCH_STEPS=8,16,32 LOBE_SHARE=0,0.5,1
+    .venv/bin/python -m benchmarks.studies.glossy_study [FILE.blend ...] [--samples 256] [--size 320x180] [--pictures F]
+    .venv/bin/python -m benchmarks.studies.glossy_study --constants MARCH_STEPS=8,16,32 LOBE_SHARE=0,0.5,1
     .venv/bin/python -m benchmarks.studies.glossy_study --cost --size 640x360
 
 Prints tables: relative L1 error and energy of the indirect glossy light, over the pixels with a Glossy Color; the
@@ -10,7 +10,10 @@ first row is the noise of the reference itself. The reference is Cycles with fou
 ones, in two halves of `samples` each: Glossy Indirect, with the light that meshes and the world send directly, which
 EEVEE has no lamps for. With
 --constants Afterlight alone, with other values of the shaders' constants or RAYS. With --cost the seconds of the whole
-gather without and with the glossy light, the lesser of two each."""
+gather without and with the glossy light, the lesser of two each.
+
+The tables in docs/method/glossy.md are of commit a2e1056 (26 November 2026), unless the page says otherwise.
+"""
 
 import argparse
 import sys

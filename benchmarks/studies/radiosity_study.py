@@ -6,7 +6,11 @@
 Rooms of boxes under a point lamp, traced exactly, without Blender (benchmarks/gpu/opengl.py). The truth is a radiosity
 solution of the same number of bounces: all pairs of patches of all surfaces, and of these and pixels of the main view,
 in float64, with rays cast against the boxes. Error: relative L1 of the indirect light; beside it its energy over the
-true one."""
+true one.
+
+The tables in docs/method/radiosity.md and temporal.md are of commit 34ab846 and a3228cd (25 and 26 November 2026),
+unless the page says otherwise.
+"""
 
 import argparse
 import re

@@ -5,7 +5,10 @@
 
 Prints a table: the share of the light that leaves surfaces seen by the main view, and with each further view; the
 seconds to place them (again in the frame after, where they stay), and to render the views beside those of one sample
-of the frame."""
+of the frame.
+
+The tables in docs/blender/views.md are of commit 0b4fe02 (25 November 2026), unless the page says otherwise.
+"""
 
 import argparse
 import sys

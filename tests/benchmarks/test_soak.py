@@ -1,23 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nothing stays behind: the soak itself in short, and that each thing left would show. `make soak` is the long one."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
 
-PATH = Path(__file__).resolve().parents[2] / "benchmarks" / "soak.py"
+from benchmarks import soak
+
 UPDATES = 80
-
-
-def load():
-    spec = importlib.util.spec_from_file_location("soak", PATH)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-soak = load()
 
 
 def test_nothing_stays_behind(tmp_path):

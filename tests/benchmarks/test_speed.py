@@ -123,6 +123,7 @@ def found():
             "timer": "timer queries",
         },
         "command": "python -m benchmarks.gpu",
+        "commit": "0123456",
         "quick": False,
         "gather_passes": ["gather"],
         "paper": [run(4, 64, 28), run(4, 256, 51), run(2, 256, 123), run(2, 64, 67)],
