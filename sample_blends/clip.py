@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render moving shots by EEVEE alone and with Afterlight, and put the two beside each other in one animated picture.
 
-    .venv/bin/python sample_blends/clip.py [SHOT ...] [--frames 1-24] [--size 480x270] [--samples 16] [--preset
-    production]
-        [--folder build/clip]
+    .venv/bin/python sample_blends/clip.py [SHOT ...] [--frames 1-24] [--size 480x270] [--samples 16]
+        [--preset production] [--folder build/clip]
 
 Writes <shot>.webp, EEVEE alone on the left; lossy enough to have less than 3 MB."""
 

@@ -8,6 +8,7 @@ Writes <name>_eevee.png, <name>_afterlight.png, and <name>.png with the first on
 WebP, where a folder for that is given (it needs Pillow)."""
 
 import argparse
+import importlib.util
 import sys
 import time
 from pathlib import Path
@@ -100,6 +101,9 @@ def main():
     names = samples if options.all else options.names or ["cornell_box"]
     if missing := [name for name in names if name not in samples]:
         parser.error(f"there is no {missing[0]}.blend in {HERE}; 'make samples' writes the sample scenes")
+
+    if options.webp and not importlib.util.find_spec("PIL"):
+        parser.error("--webp needs Pillow, which this Python does not have")
 
     session.enable_afterlight()
     folder = options.folder.resolve()

@@ -21,6 +21,7 @@ import numpy as np
 
 import session
 
+from .. import figures
 from . import bench, cost_report
 
 POLYGONS = 1_000, 3_000_000
@@ -164,7 +165,7 @@ def verdicts(found):
     return sentences
 
 
-def section(found, settings, size, machine, command):
+def section(found, settings, size, machine, command, commit):
     """The part of the page."""
     first = found[0]
     rows = []
@@ -189,7 +190,7 @@ def section(found, settings, size, machine, command):
                 "and by many "
                 "lights of the same total power, measured by",
                 f"    {command}",
-                f"on {machine}.",
+                f"on {machine}, at commit {commit}.",
                 "\n".join(f"- {sentence}" for sentence, _ in verdicts(found)),
                 f"The light: the whole of `gather_indirect()`, arrays in and an array out, at start {settings.start}, "
                 f"{settings.samples} samples, radius {settings.radius}; {len(first.seconds)} rounds in one "
@@ -226,8 +227,8 @@ def main():
     found = rooms(afterlight, POLYGONS, LIGHTS, options.size)
     settings = light.PaperSettings(start=4, samples=64, radius=16, seed=0, strength=1.0)
     measure(light, found, settings, options.rounds)
-    command = shlex.join([".venv/bin/python", "-m", "benchmarks.constant_cost", *session.arguments()])
-    text = section(found, settings, options.size, bench.machine(), command)
+    command = shlex.join([".venv/bin/python", "-m", "benchmarks.cost.constant_cost", *session.arguments()])
+    text = section(found, settings, options.size, bench.machine(), command, figures.commit())
     cost_report.write(options.output, constant_cost=text)
     print(text)
     return int(not all(kept for _, kept in verdicts(found)))

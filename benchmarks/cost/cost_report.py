@@ -13,7 +13,7 @@ WHOLE_BOUND = 1.0  # Afterlight's seconds / those that EEVEE's ray tracing adds 
 GPU_BOUND = 0.1  # the same for the part on the GPU
 SAMPLES_BOUNDS = {"draft": 1, "production": 6}  # samples of EEVEE that the stages on the GPU may take the time of
 MEMORY_BOUNDS = {"Paper": 700, "Radiosity": 1500}  # MB above EEVEE alone, by method
-CONSTANT_COST = "## Constant cost"  # the page's last part, by benchmarks.constant_cost
+CONSTANT_COST = "## Constant cost"  # the page's last part, by benchmarks.cost.constant_cost
 
 
 class Frame(NamedTuple):

@@ -98,7 +98,7 @@ def part(found, plots):
             f"## {machine['renderer']}",
             f"{machine['vendor']}, OpenGL {machine['version']}; processor {machine['processor']} ({machine['cores']} "
             f"cores). GPU times are from {machine['timer']}. Measured by `{found['command']}` at commit "
-            f"{found['commit']}.",
+            f"{found.get('commit', 'unknown')}.",
             *(["With `--quick`: few and small frames."] if found["quick"] else []),
             f"- {verdict(found)[0]}",
             "### A frame, pass by pass",

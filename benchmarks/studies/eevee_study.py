@@ -18,7 +18,7 @@ from statistics import mean, median
 
 import session
 
-from .. import ROOT
+from .. import ROOT, figures
 from ..accuracy import candidates, metrics, references
 
 BOUNCES, SAMPLES, HALF = 4, 4, 64
@@ -83,7 +83,7 @@ def main(arguments):
         width, height = map(int, text.split("x"))
         return width, height
 
-    parser = argparse.ArgumentParser(prog="benchmarks.eevee_study", description="EEVEE's ray tracing at its best.")
+    parser = argparse.ArgumentParser(prog="benchmarks.studies.eevee_study", description="EEVEE's best ray tracing.")
     parser.add_argument("blends", nargs="*", type=Path, metavar="FILE.blend", help="all of sample_blends/ without")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "measured" / "accuracy" / "eevee_study.json")
     parser.add_argument("--size", type=size, default=(160, 90), metavar="WxH", help="160x90")
@@ -110,7 +110,8 @@ def main(arguments):
     options.out.write_text(
         json.dumps(
             {
-                "command": shlex.join([".venv/bin/python", "-m", "benchmarks.eevee_study", *arguments]),
+                "command": shlex.join([".venv/bin/python", "-m", "benchmarks.studies.eevee_study", *arguments]),
+                "commit": figures.commit(),
                 "size": options.size,
                 "samples": SAMPLES,
                 "scenes": list(found),

@@ -12,7 +12,8 @@ EEVEE has no lamps for. With
 --constants Afterlight alone, with other values of the shaders' constants or RAYS. With --cost the seconds of the whole
 gather without and with the glossy light, the lesser of two each.
 
-The tables in docs/method/glossy.md are of commit a2e1056 (26 November 2026), unless the page says otherwise.
+The tables in docs/method/glossy.md, all of 26 November 2026: against EEVEE's ray tracing at commit c87df14, of the
+constants at 3f484d0, of the cost at fc0e05e.
 """
 
 import argparse

@@ -9,8 +9,8 @@ pairs of pixels, which is only affordable there) and 640 x 360 (samples), and a 
 The tables in docs/method/paper.md are of commit dc1554d (23 November 2026), unless the page says otherwise.
 """
 
+import argparse
 import importlib
-import sys
 from itertools import product
 
 import extension
@@ -156,5 +156,10 @@ def upsampling_table():
 TABLES = {"radius": radius_table, "samples": samples_table, "bound": bound_table, "upsampling": upsampling_table}
 
 if __name__ == "__main__":
-    for name in sys.argv[1:] or TABLES:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}; all without")
+    wanted = parser.parse_args()
+    if unknown := [name for name in wanted.tables if name not in TABLES]:
+        parser.error(f"there is no table {unknown[0]}; there are {', '.join(TABLES)}")
+    for name in wanted.tables or TABLES:
         TABLES[name]()

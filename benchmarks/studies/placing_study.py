@@ -8,7 +8,7 @@ Prints a table: the processor's seconds to read the scene into a tree, to follow
 of all seeds), and the share of light that all views see, mean and standard error over the seeds, told by paths that
 they were not placed by. The passes of the main view are made by rays, 160 x 90.
 
-The tables in docs/blender/views.md are of commit 9934713 (28 November 2026), unless the page says otherwise.
+The tables in docs/blender/views.md are of commits 2738afa and 9934713 (28 November 2026).
 """
 
 import argparse

@@ -8,8 +8,8 @@ solution of the same number of bounces: all pairs of patches of all surfaces, an
 in float64, with rays cast against the boxes. Error: relative L1 of the indirect light; beside it its energy over the
 true one.
 
-The tables in docs/method/radiosity.md and temporal.md are of commit 34ab846 and a3228cd (25 and 26 November 2026),
-unless the page says otherwise.
+The tables of visibility in docs/method/radiosity.md are of commit 6030fea (25 November 2026), those marked "old
+rule" of d122ee4 (25 November) or between; those in docs/method/temporal.md of 126c37a (26 November).
 """
 
 import argparse
