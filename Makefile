@@ -7,7 +7,7 @@ help:            ## this list
 setup:           ## .venv with Blender's module, tests' packages and what they need from the system
 	@PYTHON='$(PYTHON)' tools/setup.sh
 
-test: setup      ## every test, under 15 minutes on two cores; make test PYTEST='tests/test_package.py -k zip' for some
+test: setup      ## every test, under 15 minutes on two cores; make test PYTEST='tests/blender/test_package.py -k zip' for some
 	$(python) -m pytest $(PYTEST)
 
 lint: setup      ## ruff and mypy over the whole repository, as CI runs them
@@ -27,9 +27,9 @@ demo: package    ## before and after pictures of a sample scene, in build/demo; 
 clip: package    ## moving shots by EEVEE alone and with Afterlight, in build/clip; make clip CLIP=pillars for one
 	$(python) sample_blends/clip.py $(CLIP)
 
-pictures: package ## the pictures and the clip that the README shows, again
+pictures: package ## the README's pictures of sample scenes and its clip, again
 	$(python) sample_blends/demo.py cornell_box sunlit_room emissive_sign plastics --webp docs/pictures
-	$(python) sample_blends/clip.py creature --folder docs/pictures
+	$(python) sample_blends/clip.py creature --size 320x180 --samples 8 --folder docs/pictures
 
 samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
