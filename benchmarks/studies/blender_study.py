@@ -9,6 +9,7 @@ read all passes of a 1280x720 frame with one part a pass and with one part in al
 The tables in docs/blender/rendering.md are of commit 12b7a92 (23 November 2026), unless the page says otherwise.
 """
 
+import argparse
 import statistics
 import time
 
@@ -78,6 +79,7 @@ def files(scene):
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     scene = bench.open_scene(ROOT / "sample_blends" / "cornell_box.blend", (160, 90), afterlight)
     ray_tracing(scene)
     files(scene)
