@@ -2,6 +2,7 @@
 """The pages of docs: every link, picture, command and file that they name is there."""
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -10,9 +11,12 @@ import extension
 
 ROOT = extension.ROOT
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
-LINK = re.compile(r"\]\(([^)\s]+)\)")
+LINK = re.compile(r"\]\(([^)\s]+)\)|<(?:a|img)\s[^>]*?(?:href|src)=\"([^\"]+)\"")
 CODE = re.compile(r"`([^`\n]+)`")
-FILE = re.compile(r"(?:addon|shaders|tests|tools|benchmarks|sample_blends)/[\w/]+\.(?:py|glsl|sh|blend)")
+BLOCK = re.compile(r"^```\w*\n(.*?)^```", re.M | re.S)
+FILE = re.compile(r"(?<![\w./<>*-])[\w./]*\w\.(?:py|glsl|sh|blend)\b")
+SOURCES = "addon", "shaders", "tests", "tools", "benchmarks", "sample_blends"
+FOLDERS = "", "addon", "shaders"  # where a path in a page may begin
 MODULE = re.compile(r"python -m (benchmarks[\w.]*)")
 TARGET = re.compile(r"(?:^|[`\s])make ([a-z-]+)(?=[`\s]|$)")
 PAST = {"CHANGELOG.md"}  # speaks of files as they were
@@ -24,10 +28,29 @@ def anchors(text):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
+def links(text):
+    """The targets of a page's links and pictures, in Markdown and HTML."""
+    return [markdown or html for markdown, html in LINK.findall(text)]
+
+
+@cache
+def file_names(root):
+    """Names of the source files, without their folders."""
+    return {path.name for folder in SOURCES for path in (root / folder).rglob("*.*")}
+
+
+def exists(file, path, root):
+    """Whether a file is there that a page names, by its path or, without any folder, by its name alone. The user's
+    scenes have any name."""
+    if "/" not in file:
+        return file in file_names(root) or file.endswith(".blend")
+    return (path.parent / file).exists() or any((root / folder / file).exists() for folder in FOLDERS)
+
+
 def problems(path, root=ROOT):
     """What a page names that is not there, in words."""
     text = path.read_text()
-    for link in LINK.findall(text):
+    for link in links(text):
         if re.match(r"[a-z]+:", link):
             continue
         file, _, anchor = link.partition("#")
@@ -36,11 +59,14 @@ def problems(path, root=ROOT):
             yield f"the link {link} leads nowhere"
         elif anchor and target.suffix == ".md" and anchor not in anchors(target.read_text()):
             yield f"{link}: no such heading"
+        elif anchor and target.suffix == ".html" and f'id="{anchor}"' not in target.read_text():
+            yield f"{link}: no such section"
     if path.name in PAST:
         return
-    for code in CODE.findall(text) + re.findall(r"^    (.+)$", text, re.M):
+    blocks = [line for block in BLOCK.findall(text) for line in block.splitlines()]
+    for code in CODE.findall(text) + re.findall(r"^    (.+)$", text, re.M) + blocks:
         for file in FILE.findall(code):
-            if not (root / file).exists():
+            if not exists(file, path, root):
                 yield f"there is no {file}"
         for module in MODULE.findall(code):
             place = root.joinpath(*module.rstrip(".").split("."))
@@ -66,19 +92,37 @@ def test_every_page_is_in_the_index():
 
 
 def test_every_picture_is_shown():
-    shown = {(page.parent / link).resolve() for page in PAGES for link in LINK.findall(page.read_text())}
+    shown = {(page.parent / link).resolve() for page in PAGES for link in links(page.read_text())}
     pictures = {path for kind in ("webp", "png", "svg") for path in (ROOT / "docs").rglob(f"*.{kind}")}
     assert not pictures - shown
 
 
-def test_what_is_missing_is_found(tmp_path):
+BAD = {  # text of a page: what is wrong with it
+    "[a](none.md)": "the link none.md leads nowhere",
+    "![a](none.webp)": "the link none.webp leads nowhere",
+    '<img src="none.png" width="9">': "the link none.png leads nowhere",
+    "[a](#other)": "#other: no such heading",
+    "[a](page.html#other)": "page.html#other: no such section",
+    "`addon/none.py`": "there is no addon/none.py",
+    "`render/none.py`": "there is no render/none.py",
+    "`none.glsl`": "there is no none.glsl",
+    "`make nothing`": "make has no target nothing",
+    "    make nothing": "make has no target nothing",
+    "```\nmake nothing\n```": "make has no target nothing",
+    "    python -m benchmarks.none": "there is no module benchmarks.none",
+}
+GOOD = (
+    "[a](#title) [b](page.html#here) `addon/render/job.py` `render/job.py` `job.py` `paper/gather.glsl`",
+    "`make lint` `python -m benchmarks.gpu --out x` `sample_blends/<name>.py` https://example.org/none.py",
+)
+
+
+@pytest.mark.parametrize("text", [*BAD, *GOOD])
+def test_what_is_missing_is_found(tmp_path, text):
     page = tmp_path / "page.md"
-    page.write_text(
-        "# Title\n[a](none.md) [b](#title) [c](#other) `addon/none.py` `make nothing`\n"
-        "\n    python -m benchmarks.none\n"
-    )
-    found = list(problems(page))
-    assert len(found) == 5 and not any("#title" in each for each in found)
+    page.write_text(f"# Title\n\n{text}\n")
+    (tmp_path / "page.html").write_text('<h2 id="here">Here</h2>')
+    assert list(problems(page)) == ([BAD[text]] if text in BAD else [])
 
 
 def test_the_checkout_is_light():

@@ -4,6 +4,7 @@
 Read from the text, with the imports inside functions, which hide a circle and do not undo it."""
 
 import ast
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -104,6 +105,52 @@ def test_the_gather_knows_no_scene():
             inside, outside = imports(name, path, known)
             assert {other.split(".")[0] for other in inside} <= {"gather"}, name
             assert {other.split(".")[0] for other in outside} <= OF_THE_GATHER, name
+
+
+def allowed_imports(page):
+    """{folder of the add-on: the folders that it may import}, of the table in docs/ARCHITECTURE.md. "settings" stands
+    for modules that lie in no folder."""
+    rows = re.findall(r"^\| (?:\*(\w+)\*: )?`addon/(\w+)[/.].*\| ([\w, ]+) \|$", page, re.M)
+    return {name or folder: set(imported.split(", ")) for name, folder, imported in rows}
+
+
+def forbidden_imports(root, allowed):
+    """(importing module, imported one) that the table does not allow."""
+
+    def folder(name):
+        return name.split(".")[0] if root.joinpath(name.split(".")[0]).is_dir() else "settings"
+
+    for name, others in graph_of(root).items():
+        for other in others if name else ():  # the add-on's own __init__ registers all parts
+            of, used = folder(name), folder(other)
+            # Translations import nothing.
+            if used not in allowed.get(of, set()) | {of} | ({"translations"} if of != "gather" else set()):
+                yield name, other
+
+
+def test_imports_are_those_of_the_architecture():
+    allowed = allowed_imports((extension.ROOT / "docs" / "ARCHITECTURE.md").read_text())
+    folders = {path.parent.name for path in ADDON.glob("*/__init__.py")} - {"translations"}
+    assert allowed.keys() == folders | {"settings"}
+    assert not list(forbidden_imports(ADDON, allowed))
+
+
+def test_a_forbidden_import_is_found(tmp_path):
+    allowed = allowed_imports(
+        "| `addon/high/` | what | settings, low |\n| *settings*: `addon/a.py`, `b.py` | x | low |\n"
+        "| `addon/low/` | y | nothing |\n"
+    )
+    assert allowed == {"high": {"settings", "low"}, "settings": {"low"}, "low": {"nothing"}}
+    for name, text in {
+        "__init__": "from . import a, high",
+        "a": "from .low import x",
+        "high/__init__": "from ..low import x\nfrom .. import a",
+        "low/__init__": "",
+        "low/x": "def f():\n    from .. import a",
+    }.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / f"{name}.py").write_text(text)
+    assert list(forbidden_imports(tmp_path, allowed)) == [("low.x", "a")]
 
 
 def test_no_two_modules_share_a_name():
