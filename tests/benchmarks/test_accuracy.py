@@ -263,6 +263,13 @@ def test_a_run_of_it_all(shot, tmp_path):
     assert rows["EEVEE"]["indirect"]["energy"] == 0 and rows["EEVEE"]["indirect"]["l1"] == pytest.approx(1)
     lit = rows["Afterlight, Paper"]
     assert 0.2 < lit["indirect"]["energy"] < 1.2 and lit["indirect"]["l1"] < 0.9 and lit["cost"] > 0
+    clean = rows["Cycles, 16 samples, denoised"]
+    assert clean["final"]["l1"] < rows["EEVEE"]["final"]["l1"] and "indirect" not in clean and clean["cost"] > 0
+    assert 0 < clean["visible"]["blotches"] < 1 and lit["visible"]["dots"] >= 0
+    whole = found["good"]["whole"]
+    assert whole["Afterlight, Paper"]["cycles"] < whole["EEVEE"]["cycles"] and whole["EEVEE"]["reachable"] > 0
+    scene_page = (out / "good.md").read_text()
+    assert "LDR-FLIP" in scene_page and "blotches" in scene_page
     gains = [
         row["gain"] for row in found["good"]["causes"] if row["name"] not in ("total", "noise of the visibility rays")
     ]
