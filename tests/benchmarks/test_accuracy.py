@@ -264,7 +264,8 @@ def test_a_run_of_it_all(shot, tmp_path):
     lit = rows["Afterlight, Paper"]
     assert 0.2 < lit["indirect"]["energy"] < 1.2 and lit["indirect"]["l1"] < 0.9 and lit["cost"] > 0
     clean = rows["Cycles, 16 samples, denoised"]
-    assert clean["final"]["l1"] < rows["EEVEE"]["final"]["l1"] and "indirect" not in clean and clean["cost"] > 0
+    error = clean["final"].get("l1", clean["final"].get("at_most"))  # the latter where the reference is too noisy
+    assert error < rows["EEVEE"]["final"]["l1"] and "indirect" not in clean and clean["cost"] > 0
     assert 0 < clean["visible"]["blotches"] < 1 and lit["visible"]["dots"] >= 0
     whole = found["good"]["whole"]
     assert whole["Afterlight, Paper"]["cycles"] < whole["EEVEE"]["cycles"] and whole["EEVEE"]["reachable"] > 0
