@@ -78,3 +78,10 @@ def light(afterlight):
         scene.render.resolution_x = scene.render.resolution_y = 4
         bpy.ops.render.render()
     return afterlight.addon.gather
+
+
+def pytest_sessionfinish():
+    """Blender's GPU ends before Python does: let go of what tests keep on it."""
+    import gather_fixtures
+
+    gather_fixtures.halves_shader.cache_clear()
