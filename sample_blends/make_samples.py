@@ -45,7 +45,7 @@ ARTISTS = (
     "bust",
     "night_lamp",
     "fog",
-    "exhibition",
+    "bazaar",
     "heavy_room",
 )  # what artists build, with textures, glass, leaves, hair, fog; apart for the same reason
 LARGEST = 2_000_000  # bytes; the samples are kept in the repository
@@ -82,7 +82,7 @@ def main():
         "--folder",
         type=Path,
         default=HERE,
-        help="where to write; beside this script without, the moving shots in moving/ there, what artists build in artists/",
+        help="where to write; beside this script without, and there in moving/ and artists/ what belongs in them",
     )
     options = parser.parse_args(session.arguments())
     if unknown := set(options.names) - set(every):

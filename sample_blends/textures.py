@@ -149,7 +149,7 @@ def leaf(size=128, color=(0.25, 0.42, 0.12)):
     return np.dstack([np.clip(np.asarray(color) * tone[..., None], 0, 1), alpha])
 
 
-def material(name, pattern, metres, *, depth=0.004, map_quality=70, quality=70, maps=True, specular=None):
+def material(name, pattern, metres, *, depth=0.004, map_quality=70, quality=70, maps=True, kind="JPEG"):
     """A material with a pattern's colour, roughness and normal map; one picture covers `metres` of the UV map.
 
     depth: of the pattern's height, in metres; maps: False for the colour alone."""
@@ -164,7 +164,7 @@ def material(name, pattern, metres, *, depth=0.004, map_quality=70, quality=70, 
 
     def picture(suffix, pixels, data):
         node = nodes.new("ShaderNodeTexImage")
-        node.image = packed(f"{name} {suffix}", pixels, data=data, quality=map_quality if data else quality)
+        node.image = packed(f"{name} {suffix}", pixels, data=data, quality=map_quality if data else quality, kind=kind)
         links.new(mapping.outputs["Vector"], node.inputs["Vector"])
         return node.outputs["Color"]
 
