@@ -12,6 +12,7 @@ import parts
 import shapes
 import textures
 from parts import aim, box, camera, glossy, light_data, mesh, place, render_settings, turned
+from procedural import plastered, wooden
 
 GUIDES, POINTS, COPIES = 1500, 6, 14
 
@@ -20,10 +21,11 @@ def build(scene):
     render_settings(scene, exposure=0.15)
     scene.eevee.taa_render_samples = 16
     _studio()
-    head = place("Bust", _bust(), _skin())
+    head = place("Bust", _bust(), _skin("Skin", (0.72, 0.42, 0.31), 0.42))
+    _lips(head.data)
     smooth = head.modifiers.new("Subdivision", "SUBSURF")
     smooth.levels, smooth.render_levels = 0, 1
-    _eyes()
+    _eyes(head.data.materials[0])
     _hair(head)
     _fur()
     for name, color, power, at, size in (
@@ -37,8 +39,8 @@ def build(scene):
 
 
 def _studio():
-    red, wall = parts.plastered("Red wall", (0.58, 0.08, 0.05), 0.2), parts.plastered("Studio wall", (0.58, 0.52, 0.44))
-    box("Floor", parts.wooden("Floor", (0.22, 0.13, 0.07), (0.36, 0.22, 0.12)), (-2, -2.4, -0.1), (2, 1.4, 0))
+    red, wall = plastered("Red wall", (0.58, 0.08, 0.05), 0.2), plastered("Studio wall", (0.58, 0.52, 0.44))
+    box("Floor", wooden("Floor", (0.22, 0.13, 0.07), (0.36, 0.22, 0.12)), (-2, -2.4, -0.1), (2, 1.4, 0))
     box("Back wall", wall, (-2, 1.3, 0), (2, 1.4, 2.8))
     box("Red wall", red, (0.95, -1.2, 0), (1.0, 1.3, 2.8))
     box("Left wall", wall, (-2.1, -2.4, 0), (-2, 1.4, 2.8))
@@ -49,7 +51,7 @@ def _studio():
     foot = [(0.001, 0), (0.15, 0), (0.15, 0.025), (0.09, 0.05), (0.075, 0.09), (0.10, 0.11), (0.001, 0.11)]
     turned("Foot", glossy("Dark stone", (0.05, 0.045, 0.04), 0.2), foot, (0, 0, 1.02))
     box("Canvas", glossy("Canvas", (0.70, 0.62, 0.42), 0.8), (-1.35, 1.18, 0.9), (-0.55, 1.22, 1.95), bevel=0.004)
-    box("Shelf", parts.wooden("Shelf", (0.25, 0.15, 0.08), (0.4, 0.25, 0.13)), (0.15, 1.05, 1.25), (0.93, 1.3, 1.29))
+    box("Shelf", wooden("Shelf", (0.25, 0.15, 0.08), (0.4, 0.25, 0.13)), (0.15, 1.05, 1.25), (0.93, 1.3, 1.29))
     for number, (x, color) in enumerate(
         ((0.28, (0.05, 0.25, 0.45)), (0.46, (0.75, 0.50, 0.08)), (0.66, (0.1, 0.3, 0.2)))
     ):
@@ -57,10 +59,10 @@ def _studio():
         turned("Jar", glossy(f"Jar {number}", color, 0.15), jar, (x, 1.17, 1.29))
 
 
-def _skin():
-    material = glossy("Skin", (0.72, 0.42, 0.31), 0.42)
+def _skin(name, color, roughness):
+    material = glossy(name, color, roughness)
     inputs = material.node_tree.nodes["Principled BSDF"].inputs
-    inputs["Subsurface Weight"].default_value, inputs["Subsurface Scale"].default_value = 1.0, 0.02
+    inputs["Subsurface Weight"].default_value, inputs["Subsurface Scale"].default_value = 1.0, 0.007
     inputs["Subsurface Radius"].default_value = (1.0, 0.35, 0.2)
     return material
 
@@ -96,11 +98,32 @@ def _bust():
     return mesh("Bust", points, faces, smooth=True)
 
 
-def _eyes():
-    white, iris = glossy("Eye white", (0.82, 0.79, 0.75), 0.1), glossy("Iris", (0.06, 0.12, 0.10), 0.05)
+def _eyes(skin):
+    """Closed eyes: lids, and a line of lashes on each."""
+    dark = glossy("Lashes", (0.03, 0.015, 0.01), 0.5)
     for side in (-1, 1):
-        parts.ball("Eye", white, (0.031 * side, -0.0735, 1.469), 0.0150, 24)
-        parts.ball("Iris", iris, (0.031 * side + 0.001, -0.0825, 1.469), 0.0070, 16)
+        middle, radius = (0.031 * side, -0.0672, 1.4690), 0.0150
+        parts.ball("Lid", skin, middle, radius, 32)
+        line = bpy.data.curves.new("Lashes", "CURVE")
+        line.dimensions, line.bevel_depth = "3D", 0.0007
+        spline = line.splines.new("POLY")
+        spline.points.add(12)
+        for point, angle in zip(spline.points, np.linspace(-1.1, 1.1, 13)):
+            down = -0.30 - 0.12 * np.cos(angle)
+            flat = np.sqrt(1 - down**2)
+            x, y, z = flat * np.sin(angle), -flat * np.cos(angle), down
+            point.co = (*(m + 1.01 * radius * each for m, each in zip(middle, (x, y, z))), 1)
+        place("Lashes", line, dark)
+
+
+def _lips(data):
+    """A second material on the faces of the mouth."""
+    lips = _skin("Lips", (0.60, 0.20, 0.17), 0.3)
+    data.materials.append(lips)
+    for face in data.polygons:
+        x, y, z = face.center
+        if y < -0.086 and abs(x) < 0.022 and 1.384 < z < 1.4045:
+            face.material_index = 1
 
 
 def _strands(name, roots, ways, length, material, radius, chance, *, fall, curl, copies, spread):

@@ -14,6 +14,7 @@ import parts
 import textures
 from furniture import chair, plant, table, window
 from parts import box, camera, glossy, mesh, place, render_settings, turned, wall
+from procedural import plastered, sky_texture, translucent
 
 HALF, TALL = 5.0, 6.4  # of the courtyard in x and y; height of the houses
 LEAVES = 5200
@@ -22,7 +23,7 @@ LEAVES = 5200
 def build(scene):
     render_settings(scene, exposure=-2.0)
     scene.eevee.taa_render_samples = 16
-    parts.sky_texture(scene, elevation=42, rotation=-128)
+    sky_texture(scene, elevation=42, rotation=-128)
     _houses()
     _ground()
     _tree((-1.2, 1.4))
@@ -76,7 +77,7 @@ def _ground():
     stone = textures.tiles(1024, 4, 7, ((0.66, 0.60, 0.52), (0.60, 0.53, 0.44), (0.70, 0.65, 0.58)))
     paving = textures.material("Paving", stone, 3.2, depth=0.02)
     box("Paving", paving, (-HALF - 3, -HALF, -0.2), (HALF, HALF + 0.4, 0))
-    turf = parts.plastered("Earth", (0.10, 0.07, 0.04), 0.8, 12)
+    turf = plastered("Earth", (0.10, 0.07, 0.04), 0.8, 12)
     edge = textures.material("Kerb", textures.plaster(256, 8, (0.62, 0.58, 0.52), 0.3), 1.0, depth=0.01)
     for low, high in (
         ((-2.3, 0.3), (-0.1, 0.5)),
@@ -117,7 +118,7 @@ def _tree(at):
         line.points.add(len(points) - 1)
         for point, (x, y, z, radius) in zip(line.points, points):
             point.co, point.radius = (x, y, z, 1), radius
-    place("Tree", wood, parts.plastered("Bark", (0.16, 0.11, 0.07), 1.0, 18))
+    place("Tree", wood, plastered("Bark", (0.16, 0.11, 0.07), 1.0, 18))
     twigs = np.array(found["leaves"])
     points = twigs[chance.integers(len(twigs), size=LEAVES)] + chance.normal(0, 0.13, (LEAVES, 3))
     crown = place("Crown", mesh("Crown", points, []))
@@ -126,7 +127,7 @@ def _tree(at):
 
 def _leaf():
     """One leaf card, bent along its middle, with its alpha picture; kept out of sight itself."""
-    material = parts.translucent("Leaf", (0.30, 0.42, 0.10), 0.35)
+    material = translucent("Leaf", (0.30, 0.42, 0.10), 0.35)
     tree = material.node_tree
     picture, clear, mix = (tree.nodes.new(f"ShaderNode{name}") for name in ("TexImage", "BsdfTransparent", "MixShader"))
     picture.image = textures.packed("Leaf", textures.leaf(), kind="PNG")

@@ -10,8 +10,8 @@ from math import cos, pi, sin
 import bpy
 
 import textures
-from parts import aim, ball, box, camera, glossy, glowing, light_data, mesh, place, plastered, render_settings, turned
-from parts import wall, wooden
+from parts import aim, ball, box, camera, glossy, glowing, light_data, mesh, place, render_settings, turned, wall
+from procedural import plastered, wooden
 
 WIDTH, DEPTH, HEIGHT = 6.6, 6.0, 3.4  # x and y from 0
 

@@ -8,22 +8,8 @@ from math import cos, pi, sin
 
 import textures
 from furniture import books, plant, sofa, table, vase, window
-from parts import (
-    aim,
-    ball,
-    box,
-    camera,
-    glossy,
-    glowing,
-    light_data,
-    place,
-    plastered,
-    render_settings,
-    translucent,
-    turned,
-    wall,
-    wooden,
-)
+from parts import aim, ball, box, camera, glossy, glowing, light_data, place, render_settings, turned, wall
+from procedural import plastered, translucent, wooden
 
 WIDTH, DEPTH, HEIGHT = 4.4, 4.0, 2.5  # x and y from 0
 WARM = (1, 0.62, 0.30)

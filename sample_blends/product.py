@@ -23,8 +23,7 @@ def build(scene):
     _kettle((0.34, 0.62, 0.0))
     key = light_data("AREA", "Softbox", (1, 0.95, 0.88), 22, shape="RECTANGLE", size=0.9, size_y=0.6)
     place("Softbox", key, None, (-1.3, -0.9, 1.7), aim((-1.3, -0.9, 1.7), (0, 0.2, 0.1)))
-    camera(scene, (0.05, -2.15, 0.72), (0.03, 0.15, 0.19), 48)
-    scene.camera.data.dof.use_dof = False
+    camera(scene, (0.05, -2.15, 0.72), (0.0, 0.15, 0.19), 55)
     textures.unwrap(scene)
 
 
@@ -57,13 +56,13 @@ def _set():
     faces = [(2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2) for k in range(len(sweep) - 1)]
     place("Backdrop", mesh("Backdrop", points, faces, smooth=True), glossy("Paper", (0.72, 0.66, 0.58), 0.6))
     card = glossy("Card", (0.05, 0.42, 0.28), 0.5)
-    box("Card", card, (0.86, -0.3, 0), (0.88, 0.9, 0.75), turn=-14)
+    box("Card", card, (0.80, -0.3, 0), (0.82, 0.9, 0.6), turn=-14)
     wood = textures.planks(512, 4, 6, (0.52, 0.33, 0.18), 0.2)
     board = textures.material("Board", wood, 0.5, depth=0.001)
     box("Board", board, (0.16, -0.32, 0), (0.70, 0.10, 0.025), bevel=0.006)
 
 
-def _paint(name, color, **coat):
+def _paint(name, color):
     material = glossy(name, color, 0.45)
     inputs = material.node_tree.nodes["Principled BSDF"].inputs
     inputs["Coat Weight"].default_value, inputs["Coat Roughness"].default_value = 1.0, 0.03
@@ -111,10 +110,10 @@ def _car(at, turn):
         "Roof",
         cream,
         [
-            (-0.16, 0.085, 0.255, 0.268),
-            (-0.12, 0.095, 0.26, 0.285),
-            (0.03, 0.095, 0.26, 0.285),
-            (0.06, 0.085, 0.255, 0.268),
+            (-0.16, 0.08, 0.23, 0.255),
+            (-0.12, 0.092, 0.235, 0.272),
+            (0.03, 0.092, 0.235, 0.272),
+            (0.06, 0.08, 0.23, 0.255),
         ],
     )
     for x in (-0.19, 0.20):

@@ -8,6 +8,7 @@ import parts
 import textures
 from furniture import books, chair, plant, table, vase, window
 from parts import box, camera, glossy, mesh, place, render_settings, turned, wall
+from procedural import plastered, sky_texture, translucent, wooden
 
 WIDTH, DEPTH, HEIGHT = 5.6, 4.6, 2.7  # x and y from 0; the windows are in the wall at x = 0
 
@@ -15,7 +16,7 @@ WIDTH, DEPTH, HEIGHT = 5.6, 4.6, 2.7  # x and y from 0; the windows are in the w
 def build(scene):
     render_settings(scene, exposure=-1.2)
     scene.eevee.taa_render_samples = 16
-    parts.sky_texture(scene, elevation=24, rotation=-75)
+    sky_texture(scene, elevation=24, rotation=-75)
     _room()
     _things()
     camera(scene, (5.2, 0.35, 1.45), (1.5, 3.1, 1.0), 20)
@@ -23,12 +24,12 @@ def build(scene):
 
 
 def _room():
-    white = parts.plastered("Paint", (0.80, 0.78, 0.73))
-    boards = parts.wooden("Parquet", (0.36, 0.21, 0.11), (0.52, 0.33, 0.18), 0.3)
+    white = plastered("Paint", (0.80, 0.78, 0.73))
+    boards = wooden("Parquet", (0.36, 0.21, 0.11), (0.52, 0.33, 0.18), 0.3)
     x, y, z = WIDTH, DEPTH, HEIGHT
     box("Floor", boards, (-0.3, -0.2, -0.2), (x, y, 0))
     box("Ceiling", white, (-0.3, -0.2, z), (x + 0.2, y + 0.2, z + 0.2))
-    box("Back wall", parts.plastered("Sage", (0.42, 0.52, 0.42)), (-0.3, y, -0.2), (x + 0.2, y + 0.2, z + 0.2))
+    box("Back wall", plastered("Sage", (0.42, 0.52, 0.42)), (-0.3, y, -0.2), (x + 0.2, y + 0.2, z + 0.2))
     box("Right wall", white, (x, -0.2, -0.2), (x + 0.2, y, z + 0.2))
     box("Near wall", white, (-0.3, -0.4, -0.2), (x + 0.2, -0.2, z + 0.2))
     windows = [(0.7, 1.9, 0.15, 2.35), (2.5, 3.7, 0.15, 2.35)]
@@ -42,8 +43,8 @@ def _room():
             _curtain(start, 0.34)
         rod = turned("Rod", glossy("Rod", (0.1, 0.09, 0.08), 0.4), [(0.012, -1.0), (0.012, 1.0)], around=12)
         rod.location, rod.rotation_euler = (0.1, (near + far) / 2, 2.5), (1.5708, 0, 0)
-    box("Garden", parts.plastered("Lawn", (0.16, 0.24, 0.08)), (-40, -40, -0.6), (-0.3, 40, -0.4))
-    box("Hedge", parts.plastered("Hedge", (0.05, 0.12, 0.03)), (-16, -40, -0.5), (-15, 40, 1.1))
+    box("Garden", plastered("Lawn", (0.16, 0.24, 0.08)), (-40, -40, -0.6), (-0.3, 40, -0.4))
+    box("Hedge", plastered("Hedge", (0.05, 0.12, 0.03)), (-16, -40, -0.5), (-15, 40, 1.1))
 
 
 def _curtain(start, wide):
@@ -65,12 +66,12 @@ def _voile():
     """Thin cloth: half of the light that it takes goes through."""
     import bpy
 
-    return bpy.data.materials.get("Voile") or parts.translucent("Voile", (0.85, 0.82, 0.75), 0.5)
+    return bpy.data.materials.get("Voile") or translucent("Voile", (0.85, 0.82, 0.75), 0.5)
 
 
 def _things():
-    oak = parts.wooden("Oak", (0.42, 0.27, 0.14), (0.56, 0.38, 0.21), 0.35)
-    dark = parts.wooden("Walnut", (0.14, 0.08, 0.05), (0.24, 0.14, 0.08), 0.3)
+    oak = wooden("Oak", (0.42, 0.27, 0.14), (0.56, 0.38, 0.21), 0.35)
+    dark = wooden("Walnut", (0.14, 0.08, 0.05), (0.24, 0.14, 0.08), 0.3)
     cloth = glossy("Seat", (0.62, 0.22, 0.08), 0.8)
     table(oak, (1.5, 1.5, 0), (1.7, 0.9, 0.75), leg=0.07)
     for at, turn in (
