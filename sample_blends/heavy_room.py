@@ -10,8 +10,9 @@ from math import cos, pi, sin
 import bpy
 
 import textures
+from furniture import window
 from parts import aim, ball, box, camera, glossy, glowing, light_data, mesh, place, render_settings, turned, wall
-from procedural import plastered, wooden
+from procedural import plastered, sky_for_the_camera, wooden
 
 WIDTH, DEPTH, HEIGHT = 6.6, 6.0, 3.4  # x and y from 0
 
@@ -19,6 +20,7 @@ WIDTH, DEPTH, HEIGHT = 6.6, 6.0, 3.4  # x and y from 0
 def build(scene):
     render_settings(scene, exposure=0.5)
     scene.eevee.taa_render_samples = 16
+    sky_for_the_camera(scene, (0.62, 0.78, 1), 2.5)
     _room()
     _panels()
     _busts()
@@ -87,8 +89,9 @@ def _room():
     box("Right wall", white, (x, -0.2, 0), (x + 0.2, y, z))
     box("Near wall", white, (-0.2, -0.4, 0), (x + 0.2, -0.2, z))
     wall("Window wall", white, (-0.1, -0.2), (-0.1, y), z, [(1.1, 2.3, 0.4, 2.8), (3.5, 4.7, 0.4, 2.8)], 0.2)
-    ceiling = box("Ceiling", white, (-0.2, -0.2, z), (x + 0.2, y + 0.2, z + 0.2))
-    ceiling.data.shade_flat()
+    for middle in (1.5, 3.9):
+        window(white, None, (-0.12, middle, 1.6), 1.2, 2.4, 1, (2, 4))
+    box("Ceiling", white, (-0.2, -0.2, z), (x + 0.2, y + 0.2, z + 0.2))
     frame = glossy("Gilt frame", (0.78, 0.56, 0.24), 0.3, 1.0)
     for low, high in (
         ((0, y - 0.05, z - 0.16), (x, y, z)),
@@ -114,7 +117,7 @@ def _panels():
         ):
             box("Frame", gilt, low, high, bevel=0.02)
     for number in range(6):
-        _instance(panel, (0.62 + 1.07 * number, DEPTH - 0.02, 2.05))
+        _instance(panel, (0.62 + 1.07 * number, DEPTH - 0.05, 2.05))
     with _instanced("Coffer") as coffer:
         rose = turned("Rose", gilt, [(0.22, 0.0), (0.16, -0.06), (0.08, -0.02), (0.001, -0.07)], around=16)
         _subdivide(rose, 3)

@@ -6,6 +6,7 @@ Hard, because bounced light must follow the bumps and the joints, and neither bl
 import textures
 from furniture import books, lamp_data, plant, sofa, table, vase, window
 from parts import aim, box, camera, glossy, light_data, place, render_settings, turned, wall
+from procedural import sky_for_the_camera
 
 WIDTH, DEPTH, HEIGHT = 6.4, 5.2, 3.1  # x and y from 0
 
@@ -13,7 +14,7 @@ WIDTH, DEPTH, HEIGHT = 6.4, 5.2, 3.1  # x and y from 0
 def build(scene):
     render_settings(scene, exposure=0.7)
     scene.eevee.taa_render_samples = 16
-    _daylight_for_the_camera(scene)
+    sky_for_the_camera(scene, (0.62, 0.78, 1), 2.5)
     _room()
     _things()
     sun = light_data("SUN", "Sun", (1, 0.86, 0.66), 22, angle=0.02)
@@ -24,18 +25,6 @@ def build(scene):
         panel.visible_camera = False  # or Cycles shows it instead of the window
     camera(scene, (5.9, 0.35, 1.45), (1.9, 3.9, 1.05), 22)
     textures.unwrap(scene)
-
-
-def _daylight_for_the_camera(scene):
-    """A bright sky behind the windows that lights nothing: the lamps at the windows do."""
-    nodes, links = scene.world.node_tree.nodes, scene.world.node_tree.links
-    background = next(node for node in nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (0.62, 0.78, 1, 1)
-    path = nodes.new("ShaderNodeLightPath")
-    strength = nodes.new("ShaderNodeMath")
-    strength.operation, strength.inputs[1].default_value = "MULTIPLY", 2.5
-    links.new(path.outputs["Is Camera Ray"], strength.inputs[0])
-    links.new(strength.outputs[0], background.inputs["Strength"])
 
 
 def _room():

@@ -24,6 +24,15 @@ def sky_texture(scene, *, elevation, rotation, strength=1.0):
     return node
 
 
+def sky_for_the_camera(scene, color, strength):
+    """A bright sky behind the windows that lights nothing: the lamps at the windows do."""
+    nodes, links = scene.world.node_tree.nodes, scene.world.node_tree.links
+    background, path, seen = sky(scene, color, 0), nodes.new("ShaderNodeLightPath"), nodes.new("ShaderNodeMath")
+    seen.operation, seen.inputs[1].default_value = "MULTIPLY", strength
+    links.new(path.outputs["Is Camera Ray"], seen.inputs[0])
+    links.new(seen.outputs[0], background.inputs["Strength"])
+
+
 def plastered(name, color, bump=0.25, scale=30.0):
     """A rough surface with a bump of procedural noise, and stains of it in the colour."""
     material = glossy(name, color, 0.7)
