@@ -11,6 +11,7 @@ import numpy as np
 
 import textures
 from parts import aim, box, camera, glossy, glowing, light_data, mesh, place, render_settings, turned
+from procedural import sky_for_the_camera
 
 SIZE, PICTURES = 2048, 30
 HALF, DEPTH, HEIGHT = 4.2, 19.0, 5.0  # the hall lies from y = 0, x about 0
@@ -36,6 +37,7 @@ def build(scene):
     for shader in (tile.node_tree.nodes["Principled BSDF"] for tile in tiles):
         shader.inputs["Roughness"].default_value = 0.3
     chance = np.random.default_rng(5)
+    sky_for_the_camera(scene, (0.55, 0.74, 1), 3)
     _hall(tiles)
     _hangings(cloths)
     _stacks(cloths, chance)

@@ -15,7 +15,7 @@ WIDTH, DEPTH, HEIGHT = 7.0, 11.0, 4.2  # x and y from 0
 
 
 def build(scene):
-    render_settings(scene, exposure=1.9)
+    render_settings(scene, exposure=1.0)
     scene.eevee.taa_render_samples = 16
     scene.eevee.volumetric_end, scene.eevee.volumetric_tile_size = 20, "4"
     scene.eevee.use_volumetric_shadows = True
@@ -107,16 +107,16 @@ def _fog():
 def _lamps():
     head, target = (5.9, 10.2, 3.7), (2.6, 4.6, 0.4)
     spot = light_data(
-        "SPOT", "Work light", (1, 0.72, 0.42), 1300, spot_size=0.75, spot_blend=0.3, shadow_soft_size=0.06
+        "SPOT", "Work light", (1, 0.72, 0.42), 1700, spot_size=0.75, spot_blend=0.3, shadow_soft_size=0.06
     )
     place("Work light", spot, None, head, aim(head, target))
     steel = glossy("Lamp housing", (0.04, 0.04, 0.045), 0.4)
     housing = turned("Lamp housing", steel, [(0.001, 0.22), (0.10, 0.22), (0.16, -0.02)], head)
     housing.rotation_euler = [angle * 0.0174533 for angle in aim(head, target)]
-    sky = light_data("AREA", "Skylight", (0.70, 0.84, 1), 160, shape="RECTANGLE", size=0.9, size_y=0.8)
+    sky = light_data("AREA", "Skylight", (0.70, 0.84, 1), 60, shape="RECTANGLE", size=0.9, size_y=0.8)
     place("Skylight", sky, None, (4.9, 5.65, HEIGHT + 0.15)).visible_camera = False
     for y in (3.9, 6.9):
-        pane = light_data("AREA", "Window light", (0.70, 0.84, 1), 60, shape="RECTANGLE", size=1.1, size_y=1.5)
+        pane = light_data("AREA", "Window light", (0.70, 0.84, 1), 14, shape="RECTANGLE", size=1.1, size_y=1.5)
         place("Window light", pane, None, (0.05, y, 2.7), aim((0, 0, 0), (1, 0, -0.35))).visible_camera = False
-    sun = light_data("SUN", "Sun", (0.80, 0.90, 1), 12, angle=0.012)
+    sun = light_data("SUN", "Sun", (0.80, 0.90, 1), 18, angle=0.012)
     place("Sun", sun, None, (-4, 6, 8), aim((0, 0, 0), (0.62, -0.22, -0.80)))
