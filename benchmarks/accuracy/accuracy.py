@@ -286,6 +286,7 @@ def arguments_of(options):
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="benchmarks.accuracy", description="Afterlight's error beside EEVEE's.")
     parser.add_argument("blends", nargs="*", type=Path, metavar="FILE.blend", help="all of sample_blends/ without")
+    parser.add_argument("--scenes", type=Path, metavar="FOLDER", help="every .blend file in it and below")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="folder; build/accuracy")
     parser.add_argument("--page", type=Path, help="the tables in Markdown; accuracy.md in that folder")
     parser.add_argument("--size", type=picture_size, default=(320, 180), metavar="WxH", help="320x180")
@@ -314,7 +315,10 @@ def parse(arguments):
     known = sorted(path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py"))
     if unknown := [name for name in options.presets if name not in known]:
         parser.error(f"there is no preset {unknown[0]}; there are {', '.join(known)}")
-    options.blends = [path.resolve() for path in options.blends or candidates.diffuse_samples()]
+    if options.scenes and not (below := sorted(options.scenes.rglob("*.blend"))):
+        parser.error(f"there is no .blend file in {options.scenes}")
+    chosen = [*options.blends, *(below if options.scenes else ())]
+    options.blends = [path.resolve() for path in chosen or candidates.diffuse_samples()]
     options.out = options.out.resolve()
     options.page = (options.page or options.out / "accuracy.md").resolve()
     return options

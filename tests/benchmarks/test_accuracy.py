@@ -281,3 +281,13 @@ def test_a_run_of_it_all(shot, tmp_path):
     for name in ("good.webp", "error_against_cost.webp"):
         assert (out / name).stat().st_size > 5000
     assert good.read_bytes() == before
+
+
+def test_a_folder_of_scenes(tmp_path, capsys):
+    (tmp_path / "deep").mkdir()
+    for name in ("b.blend", "deep/a.blend", "notes.txt"):
+        (tmp_path / name).touch()
+    assert [path.name for path in accuracy.parse(["--scenes", str(tmp_path)]).blends] == ["b.blend", "a.blend"]
+    with pytest.raises(SystemExit):
+        accuracy.parse(["--scenes", str(tmp_path / "none")])
+    assert "no .blend file" in capsys.readouterr().err
