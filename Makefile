@@ -40,8 +40,8 @@ bench: package   ## what it costs: beside EEVEE, by polygons and lights, and alo
 speed: setup     ## the last of these: the light alone, pass by pass, on this machine's GPU
 	$(python) -m benchmarks.gpu
 
-accuracy: package ## error beside EEVEE's own GI and Cycles, and where it comes from; half an hour the first time
-	$(python) -m benchmarks.accuracy --out docs/measured/accuracy --page docs/measured/accuracy.md
+accuracy: package ## error beside EEVEE and Cycles; half an hour the first time; make accuracy ACCURACY='--scenes FOLDER' for yours
+	$(python) -m benchmarks.accuracy $(or $(ACCURACY),--out docs/measured/accuracy --page docs/measured/accuracy.md)
 
 motion: package  ## error, flicker, lag and trails in moving shots; make motion MOTION='pillars --frames 1-8' for less
 	$(python) -m benchmarks.motion --page docs/measured/motion.md --sheet build/motion/sheet.webp $(MOTION)

@@ -20,7 +20,7 @@ from statistics import median
 import session
 
 from .. import ROOT, figures
-from . import accuracy_report, candidates, metrics, references
+from . import accuracy_report, candidates, metrics, references, visible
 
 KINDS = "indirect", "final"
 CLEARLY = 5  # an error must be this many times the reference's own noise
@@ -37,8 +37,12 @@ def measure(path, options, afterlight):
     surface = (plain.passes.depth > 0) & (plain.passes.depth < 1e9)
     rendered = converge(truth, shown, surface, options)
     masks = masks_of(truth, surface)
+    tables = [table(truth, rendered, kind, mask) for kind, mask in masks.items()]
+    for one, mask in zip(tables, masks.values(), strict=True):
+        add_visible(one, rendered, truth, mask)
     entry = {
-        "tables": [table(truth, rendered, kind, mask) for kind, mask in masks.items()],
+        "tables": tables,
+        "whole": whole_pictures(scene, rendered, truth),
         "samples": {str(number): 2 * each.samples for number, each in truth.of.items()},
     }
     sheet = options.out / f"{options.name}.webp"
@@ -98,7 +102,7 @@ def table(truth, rendered, kind, mask, flip=True):
         if each.seconds:
             row["seconds"] = median(each.seconds)
             row["cost"] = median(own / base for own, base in zip(each.seconds, first.seconds, strict=True))
-        for picture in KINDS:
+        for picture in [kind for kind in KINDS if getattr(each, kind) is not None]:
             found = metrics.compare(getattr(each, picture), pictures[picture], mask, flip)
             level = (noise if each.bounces is None else truth.noise(mask, each.bounces))[picture]
             spoilt = None not in (level, found["l1"]) and found["l1"] < CLEARLY * level
@@ -122,6 +126,36 @@ def table(truth, rendered, kind, mask, flip=True):
     whole = pictures["indirect"][mask].mean(dtype=float)
     world = 1 - truth.bounced(truth.longest)[mask].mean(dtype=float) / whole if whole > 0 else 0.0
     return {"surface": kind, "share": float(mask.mean()), "world": float(world), "noise": noise, "rows": rows}
+
+
+def add_visible(one_table, rendered, truth, mask):
+    """Blotches and dots of the light, in each row of a table. Where a way has no indirect light by itself, the error of
+    its whole picture counts as the light's."""
+    indirect, final = truth.indirect(truth.longest), truth.final(truth.longest)
+    halves = [truth.indirect(truth.longest, half) for half in range(2)]
+    for row, each in zip(one_table["rows"], rendered, strict=True):
+        if each.failure or each.bounces is not None:
+            continue
+        light = each.indirect if each.indirect is not None else each.final - final + indirect
+        row["visible"] = {
+            "blotches": visible.blotches(light, indirect, mask, halves),
+            "dots": visible.dots(light, indirect, mask),
+        }
+
+
+def whole_pictures(scene, rendered, truth):
+    """{way: {"cycles", "reachable"}}: LDR-FLIP of the whole picture as the scene's view transform shows it, against
+    Cycles and against the reachable picture."""
+    eevee = rendered[0]
+    best = visible.reachable(eevee.final, eevee.indirect, truth.indirect(truth.longest))
+    shown = {"cycles": truth.final(truth.longest), "reachable": best}
+    shown = {name: visible.displayed(scene, picture) for name, picture in shown.items()}
+    found = {}
+    for each in rendered:
+        if not each.failure and each.bounces is None:
+            own = visible.displayed(scene, each.final)
+            found[each.name] = {name: visible.ldr_flip(own, other) for name, other in shown.items()}
+    return found
 
 
 def too_noisy(one_table):
@@ -252,6 +286,7 @@ def arguments_of(options):
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="benchmarks.accuracy", description="Afterlight's error beside EEVEE's.")
     parser.add_argument("blends", nargs="*", type=Path, metavar="FILE.blend", help="all of sample_blends/ without")
+    parser.add_argument("--scenes", type=Path, metavar="FOLDER", help="every .blend file in it and below")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="folder; build/accuracy")
     parser.add_argument("--page", type=Path, help="the tables in Markdown; accuracy.md in that folder")
     parser.add_argument("--size", type=picture_size, default=(320, 180), metavar="WxH", help="320x180")
@@ -280,7 +315,10 @@ def parse(arguments):
     known = sorted(path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py"))
     if unknown := [name for name in options.presets if name not in known]:
         parser.error(f"there is no preset {unknown[0]}; there are {', '.join(known)}")
-    options.blends = [path.resolve() for path in options.blends or candidates.diffuse_samples()]
+    if options.scenes and not (below := sorted(options.scenes.rglob("*.blend"))):
+        parser.error(f"there is no .blend file in {options.scenes}")
+    chosen = [*options.blends, *(below if options.scenes else ())]
+    options.blends = [path.resolve() for path in chosen or candidates.diffuse_samples()]
     options.out = options.out.resolve()
     options.page = (options.page or options.out / "accuracy.md").resolve()
     return options

@@ -24,9 +24,10 @@ from . import metrics
 
 PICTURES = {"indirect": "Indirect light", "final": "Final image"}
 PLOT, STUDY = "error_against_cost.webp", "eevee_study.json"
-CURVES = {"EEVEE": "s", "EEVEE ray tracing": "D", "Afterlight": "o", "Cycles": "^"}
-COLORS = dict(zip(CURVES, ("0.35", "tab:blue", "tab:orange", "tab:green"), strict=True))
-SHEET_GROUPS = {"EEVEE", "EEVEE ray tracing", "Afterlight"}
+CURVES = {"EEVEE": "s", "EEVEE ray tracing": "D", "Afterlight": "o", "Cycles": "^", "Cycles, denoised": "v"}
+COLORS = dict(zip(CURVES, ("0.35", "tab:blue", "tab:orange", "tab:green", "tab:purple"), strict=True))
+SHEET_GROUPS = {"EEVEE", "EEVEE ray tracing", "Afterlight", "Cycles, denoised"}
+LIFT = 2.0  # stops, by which the contact sheets look into the shadows
 
 
 def write(path, page):
@@ -154,7 +155,10 @@ def scene_parts(scene, found):
             f"{what}, {one['share']:.1%} of the frame. The reference has "
             f"{scene['samples'][str(found['bounces'])]} samples; its noise, as relative L1: {noise}.{world}",
             *picture_tables(one["rows"]),
+            *visible_parts(one["rows"]),
         ]
+    if "whole" in scene:
+        parts += whole_parts(scene["whole"])
     return parts + cause_parts(scene.get("causes"))
 
 
@@ -163,6 +167,29 @@ def picture_tables(rows):
     return [
         grid([title, *metrics.NAMES.values(), "cost"], [cells(row, picture) for row in rows])
         for picture, title in PICTURES.items()
+    ]
+
+
+def visible_parts(rows):
+    """Blotches and dots of the light; nothing for numbers that were measured without them."""
+    seen = [row for row in rows if "visible" in row]
+    if not seen:
+        return []
+    head = ["light", "blotches", "dots per million"]
+    return [
+        grid(
+            head, [[row["name"], number(row["visible"]["blotches"]), number(row["visible"]["dots"], 0)] for row in seen]
+        )
+    ]
+
+
+def whole_parts(whole):
+    """LDR-FLIP of the whole picture as it is displayed."""
+    rows = [[name, number(found["cycles"]), number(found["reachable"])] for name, found in whole.items()]
+    return [
+        "The whole picture through the scene's view transform. The *reachable* picture is EEVEE's own with Cycles' "
+        "indirect light in place of its own.",
+        grid(["LDR-FLIP", "against Cycles", "against the reachable picture"], rows),
     ]
 
 
@@ -271,28 +298,35 @@ def plot(found, path):
 
 
 def sheet(rendered, indirect, final, surface, path):
-    """A contact sheet: a row for the reference and each candidate; final image, indirect light, signed error of it."""
+    """A contact sheet: a row for the reference and each candidate; final image, the same with shadows lifted, indirect
+    light, signed error of it. Where a way has no indirect light by itself, its whole error is the light's."""
     shown = [each for each in rendered if each.final is not None and each.group in SHEET_GROUPS]
-    rows = [("Cycles", final, indirect), *((each.name, each.final, each.indirect) for each in shown)]
+    rows = [("Cycles", final, indirect)]
+    for each in shown:
+        light = each.indirect if each.indirect is not None else each.final - final + indirect
+        rows.append((each.name, each.final, light))
     height, width = surface.shape
     figure, axes = plt.subplots(
-        len(rows), 3, figsize=(10, len(rows) * 3.35 * height / width), dpi=80, squeeze=False, layout="constrained"
+        len(rows), 4, figsize=(13.3, len(rows) * 3.35 * height / width), dpi=80, squeeze=False, layout="constrained"
     )
     white, scale = exposure(final[surface]), indirect[surface].mean()
     for (name, image, light), line in zip(rows, axes, strict=True):
         line[0].imshow(tone(image / white), interpolation="nearest")
-        line[1].imshow(tone(light / max(exposure(indirect[surface]), 1e-30)), interpolation="nearest")
+        line[1].imshow(tone(image * 2**LIFT / white), interpolation="nearest")
+        line[2].imshow(tone(light / max(exposure(indirect[surface]), 1e-30)), interpolation="nearest")
         error = np.where(surface, (light - indirect).mean(-1) / max(scale, 1e-30), 0)
-        drawn = line[2].imshow(error, cmap="RdBu_r", vmin=-2, vmax=2, interpolation="nearest")
+        drawn = line[3].imshow(error, cmap="RdBu_r", vmin=-2, vmax=2, interpolation="nearest")
         line[0].set_ylabel(name, fontsize=8)
         for each in line:
             each.set_xticks([])
             each.set_yticks([])
     for each, title in zip(
-        axes[0], ("final image", "indirect light", "error of it, over the reference's mean"), strict=True
+        axes[0],
+        ("final image", f"final image, {LIFT:+.0f} stops", "indirect light", "error of it, over the reference's mean"),
+        strict=True,
     ):
         each.set_title(title, fontsize=9)
-    figure.colorbar(drawn, ax=axes[:, 2], shrink=0.4, extend="both")
+    figure.colorbar(drawn, ax=axes[:, 3], shrink=0.4, extend="both")
     figures.save(figure, path)
 
 

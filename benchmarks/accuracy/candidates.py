@@ -38,6 +38,14 @@ BEST = {
 }
 STARTUP = {"use_fast_gi": True}  # where Blender's startup file differs from a scene that a script makes
 CYCLES_SAMPLES = 1, 4, 16
+# Blender's defaults for renders.
+DENOISER = {
+    "use_denoising": True,
+    "denoiser": "OPENIMAGEDENOISE",
+    "denoising_input_passes": "RGB_ALBEDO_NORMAL",
+    "denoising_prefilter": "ACCURATE",
+    "denoising_quality": "HIGH",
+}
 SEED = 1 << 20  # of these: none that a reference uses
 
 
@@ -152,6 +160,7 @@ def all_of(afterlight, bounces, presets=()):
         Candidate("EEVEE ray tracing, best", "EEVEE ray tracing", lambda scene: traced(scene, BEST), traced_diffuse),
         *(ticked(afterlight, name) for name in presets or named),
         *(short(bounces, samples) for samples in CYCLES_SAMPLES),
+        *(denoised(bounces, samples) for samples in CYCLES_SAMPLES),
     ]
 
 
@@ -235,13 +244,37 @@ def short(bounces, samples):
     )
 
 
+def denoised(bounces, samples):
+    """Cycles with few samples and Blender's denoiser as it comes: OpenImageDenoise with albedo and normal. It works on
+    the whole picture, so there is no indirect light by itself."""
+
+    @contextmanager
+    def mode(scene):
+        with references.as_cycles(scene, bounces, samples, SEED):
+            before = [(name, getattr(scene.cycles, name)) for name in DENOISER]
+            try:
+                for name, value in DENOISER.items():
+                    setattr(scene.cycles, name, value)
+                yield
+            finally:
+                for name, value in before:
+                    setattr(scene.cycles, name, value)
+
+    return Candidate(
+        f"Cycles, {samples} sample{'s' * (samples > 1)}, denoised",
+        "Cycles, denoised",
+        mode,
+        lambda scene, final, plain: None,
+    )
+
+
 def render_all(scene, candidates, rounds, afterlight):
     """Fill in the candidates and return Plain. Every frame once to warm up, then `rounds` times in turn, so that a busy
     machine slows all alike."""
     plain = None
     for number in range(rounds + 1):
         for candidate in candidates:
-            if candidate.failure or (number == 0 and candidate.group == "Cycles"):  # Cycles compiles nothing
+            if candidate.failure or (number == 0 and candidate.group.startswith("Cycles")):  # Cycles compiles nothing
                 continue
             with candidate.mode(scene):
                 seconds, final = written(scene)

@@ -263,6 +263,14 @@ def test_a_run_of_it_all(shot, tmp_path):
     assert rows["EEVEE"]["indirect"]["energy"] == 0 and rows["EEVEE"]["indirect"]["l1"] == pytest.approx(1)
     lit = rows["Afterlight, Paper"]
     assert 0.2 < lit["indirect"]["energy"] < 1.2 and lit["indirect"]["l1"] < 0.9 and lit["cost"] > 0
+    clean = rows["Cycles, 16 samples, denoised"]
+    error = clean["final"].get("l1", clean["final"].get("at_most"))  # the latter where the reference is too noisy
+    assert error < rows["EEVEE"]["final"]["l1"] and "indirect" not in clean and clean["cost"] > 0
+    assert 0 < clean["visible"]["blotches"] < 1 and lit["visible"]["dots"] >= 0
+    whole = found["good"]["whole"]
+    assert whole["Afterlight, Paper"]["cycles"] < whole["EEVEE"]["cycles"] and whole["EEVEE"]["reachable"] > 0
+    scene_page = (out / "good.md").read_text()
+    assert "LDR-FLIP" in scene_page and "blotches" in scene_page
     gains = [
         row["gain"] for row in found["good"]["causes"] if row["name"] not in ("total", "noise of the visibility rays")
     ]
@@ -273,3 +281,13 @@ def test_a_run_of_it_all(shot, tmp_path):
     for name in ("good.webp", "error_against_cost.webp"):
         assert (out / name).stat().st_size > 5000
     assert good.read_bytes() == before
+
+
+def test_a_folder_of_scenes(tmp_path, capsys):
+    (tmp_path / "deep").mkdir()
+    for name in ("b.blend", "deep/a.blend", "notes.txt"):
+        (tmp_path / name).touch()
+    assert [path.name for path in accuracy.parse(["--scenes", str(tmp_path)]).blends] == ["b.blend", "a.blend"]
+    with pytest.raises(SystemExit):
+        accuracy.parse(["--scenes", str(tmp_path / "none")])
+    assert "no .blend file" in capsys.readouterr().err
