@@ -139,7 +139,7 @@ def add_visible(one_table, rendered, truth, mask):
         light = each.indirect if each.indirect is not None else each.final - final + indirect
         row["visible"] = {
             "blotches": visible.blotches(light, indirect, mask, halves),
-            "dots": visible.dots(light, indirect, mask),
+            "dots": visible.dots(light, indirect, mask, halves),
         }
 
 

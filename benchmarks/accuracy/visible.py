@@ -37,24 +37,30 @@ def blotches(light, reference, mask, halves=None):
     return float(np.sqrt(max(found, 0.0)))
 
 
-def dots(light, reference, mask):
+def dots(light, reference, mask, halves=None):
     """Pixels of the mask, per million, whose error differs from the median error of their eight neighbours by more than
     STANDS_OUT of the reference's mean luminance over 3 x 3 pixels. Neighbours outside the mask do not count; a pixel
-    with fewer than three is left out. None for an empty mask or a black reference."""
+    with fewer than three is left out. halves: as blotches() has them; as many dots as their noise has are taken off.
+    None for an empty mask or a black reference."""
     truth = reference @ LUMINANCE
     mean = truth[mask].mean() if mask.any() else 0
     if not mean > 0:
         return None
-    error = np.where(mask, light @ LUMINANCE - truth, np.nan)
-    around = _neighbours(error)
+    around = _neighbours(np.where(mask, truth, np.nan))
     enough = np.isfinite(around).sum(0) >= 3
-    with np.errstate(invalid="ignore"):
-        median = np.nanmedian(np.where(enough, around, 0.0), axis=0)
-    brightness = _neighbours(np.where(mask, truth, np.nan))
-    brightness = np.nanmean(np.concatenate([brightness, truth[None]]), axis=0)
     counted = mask & enough
-    stands_out = np.abs(error - median) > STANDS_OUT * np.maximum(brightness, DARKEST * mean)
-    return float(1e6 * np.count_nonzero(stands_out & counted) / max(np.count_nonzero(counted), 1))
+    brightness = np.nanmean(np.concatenate([around, truth[None]]), axis=0)
+    least = STANDS_OUT * np.maximum(brightness, DARKEST * mean)
+
+    def count(error):
+        nearby = _neighbours(np.where(mask, error, np.nan))
+        median = np.nanmedian(np.where(enough, nearby, 0.0), axis=0)
+        return np.count_nonzero((np.abs(error - median) > least) & counted)
+
+    found = count(light @ LUMINANCE - truth)
+    if halves is not None:
+        found = max(found - count((halves[0] - halves[1]) @ LUMINANCE / 2), 0)
+    return float(1e6 * found / max(np.count_nonzero(counted), 1))
 
 
 def ldr_flip(picture, reference, mask=None):

@@ -89,6 +89,16 @@ def test_dots_are_counted(picture, strength):
     assert found == pytest.approx(1e6 * 40 / mask.sum(), rel=0.15)
 
 
+def test_the_references_own_dots_are_taken_off(picture):
+    light, mask = picture
+    halves = [specks(light, mask, 400, 2.0, seed) for seed in (1, 2)]
+    mean = (halves[0] + halves[1]) / 2
+    alone = visible.dots(light, mean, mask)
+    assert alone > 5e4 and visible.dots(light, mean, mask, halves) < 0.05 * alone
+    spotted = specks(light, mask, 400, 2.0, 3)
+    assert visible.dots(spotted, mean, mask, halves) == pytest.approx(1e6 * 400 / mask.sum(), rel=0.25)
+
+
 def test_dots_let_blotches_blur_and_brightness_pass(picture):
     light, mask = picture
     assert visible.dots(stains(light, 10), light, mask) == 0
