@@ -75,6 +75,7 @@ def before_render(scene, *_):
 
 def _begin(job, scene):
     report.begin(scene)
+    job.histories.look_for_animation()
     view_scenes.leave_all_out()
     if bpy.app.background and scene.library is None:
         setup.connect(scene)

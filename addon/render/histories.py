@@ -27,11 +27,16 @@ class Left:
 
 
 class Histories:
-    """Those of one render job. first: the frame that it begins with."""
+    """Those of one render job. first: the frame that it begins with, which may be of a single picture."""
 
     def __init__(self, first):
         self._left = {}  # Left, by the lit scene's session_uid and the view layer's name
-        self._first = None if _asked_for_animation() else first  # None as soon as it surely is an animation
+        self._first = first  # None as soon as it surely is an animation
+
+    def look_for_animation(self):
+        """Ask Blender whether an animation is rendered. On the main thread, whose windows tell."""
+        if _asked_for_animation():
+            self._first = None
 
     def averages(self, scene):
         """Whether the light of the frame at hand is averaged with that of others: it is of an animation, and the
