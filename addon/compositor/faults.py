@@ -14,7 +14,7 @@ def find(scene):
 
 
 def _obstacle(scene):
-    """The one fault that keeps all light out of the picture, or {}. Further checks make no sense until it is mended."""
+    """The one fault that keeps all light out of the picture, or {}. Further checks make no sense until it is fixed."""
     helper, tree = scene.afterlight.helper, scene.compositing_node_group
     if (
         helper is None

@@ -25,7 +25,6 @@ from ..views import placement
 from . import nodes, render_order
 
 PLACEMENT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
-MAX_VIEWS = needs.MAX_VIEWS
 MAX_DISTANCE = 1e9  # metres of a stored pose from the world's origin
 PLACEMENT_KEY = "placed"  # custom property of the placement scene
 SAMPLES = 1  # EEVEE's samples of a view; the gather averages its pixels down anyway
@@ -213,7 +212,7 @@ def _checked_placement(stored):
         return None
     rotations = poses[:, :3, :3].clip(-2, 2)
     is_sound = (
-        len(poses) <= MAX_VIEWS
+        len(poses) <= needs.MAX_VIEWS
         and len(coverage) == len(poses) + 1
         and (np.abs(coverage - 0.5) < 0.51).all()
         and 0 < clearance < MAX_DISTANCE

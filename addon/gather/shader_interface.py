@@ -220,7 +220,7 @@ PASSES = {
     "emit": Pass(("common/camera", *_VIEWS, "radiosity/emit"), _EMIT_CHANNELS, "records_out", _EMIT),
     "emit_with_normals": Pass(
         ("common/camera", *_VIEWS, "common/geometric", "radiosity/emit"),
-        (*ALL_CHANNELS, "depths"),
+        _EMIT_CHANNELS,
         "records_out",
         _EMIT,
     ),

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from .. import gather, properties
+from .. import gather, parameters
 from ..compositor.nodes import GLOSSY_PASS, PASS
 from ..diagnosis import checks
 from ..host import engines, main_thread, report, roles
@@ -90,7 +90,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
         shot.problem = next((finding.text for finding in checks.findings(scene) if finding.fatal), "") or frame.problem
         if not shot.problem:
             shot.averages = frame.averages()
-            shot.settings = properties.light_settings(scene.afterlight, frame.number, shot.averages)
+            shot.settings = parameters.light_settings(scene.afterlight, frame.number, shot.averages)
             shot.glossy = needs.glossy_light(scene) and not checks.holds_reflections(scene)
             shot.camera = frame.look(self, depsgraph, shot.layer)
 
@@ -152,7 +152,7 @@ class AfterlightEngine(report.Reporter, bpy.types.RenderEngine):
             ),
             "passes file": sum(map(frame_store.size, (frame.path, *(view.path for view in frame.views)))),
         }
-        return [main, *(gather.View(view.load, view.camera, view.shine) for view in frame.views)]
+        return [main, *(gather.View(view.load, view.camera, view.load_specular) for view in frame.views)]
 
     def _gather(self, shot, views, depsgraph):
         """{pass: (H, W, 3)}: the light that the surfaces send."""

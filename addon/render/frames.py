@@ -31,8 +31,8 @@ class SavedView:
         """gather.Passes of the view. Raises report.Problem."""
         return passes.load(self.path, self.layer, self.window)
 
-    def shine(self):
-        """As gather.View has it."""
+    def load_specular(self):
+        """gather.Passes with the specular light in place of the diffuse, or None; as gather.View wants them."""
         return roughness.specular_passes(self.path, self.layer, self.window)
 
 
@@ -62,7 +62,7 @@ class RenderedFrame:
         self.scene, self.number, self.seconds = scene, scene.frame_current, {}
         self.in_front, self.problem = media.present(scene), ""
         self.path, self.views, self.camera = "", (), None
-        self._job, self._wanted = job, needs.views(scene)
+        self.wanted, self._job = needs.views(scene), job
 
     def averages(self):
         """Whether its light is averaged with that of the frames before."""
@@ -142,7 +142,7 @@ class KeptFrame:
         self.in_front = kept.in_front
         self.problem = report.message(scene)  # EEVEE's passes could not be handed back: there is nothing to light
         self.path, self.views, self.camera = kept.path, kept.views, kept.camera
-        self._wanted = kept.wanted
+        self.wanted = kept.wanted
 
     def averages(self):
         return False
@@ -152,7 +152,7 @@ class KeptFrame:
 
     def save(self, _depsgraph, _progress, warn):
         wanted = needs.views(self.scene)
-        if wanted > self._wanted:
+        if wanted > self.wanted:
             warn(
                 say(
                     "The last render had {} further views, but the settings now have {}. Press F12 to render all of "
@@ -192,7 +192,7 @@ def _keep(frame):
         frame.camera,
         layers,
         frame.views,
-        frame._wanted,
+        frame.wanted,
         frame.in_front,
     )
     frame_store.hold(("kept", scene.session_uid), [frame.path, *(view.path for view in frame.views)])

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import bpy
 from mathutils import Matrix
 
-from .. import gather, properties
+from .. import gather, parameters
 from ..gather import interactive
 from ..gather.temporal import REBUILT, SEED_STRIDE
 from ..gather.view_layout import start_of
@@ -209,7 +209,7 @@ class RegionLight:
 def _settings(viewport):
     """gather.RadiositySettings or gather.PaperSettings of the scene. Smoothing takes the place of the compositor's
     Denoise node."""
-    settings = properties.light_settings(viewport.scene.afterlight, viewport.scene.frame_current)
+    settings = parameters.light_settings(viewport.scene.afterlight, viewport.scene.frame_current)
     is_smoothed = viewport.scene.afterlight.denoise != "NONE"
     return replace(settings, smooth=is_smoothed) if isinstance(settings, gather.RadiositySettings) else settings
 
@@ -217,7 +217,7 @@ def _settings(viewport):
 def _options(viewport):
     """All settings that change the light, except its strength, which is applied when it is shown."""
     settings = viewport.scene.afterlight
-    return (*(getattr(settings, each.name) for each in properties.PARAMETERS if each.name != "strength"),)
+    return (*(getattr(settings, each.name) for each in parameters.PARAMETERS if each.name != "strength"),)
 
 
 def _world(viewport, cache):

@@ -9,11 +9,6 @@ from scenes import TREES, box, differences, matt, read_rgb, render, simple_tree,
 
 
 @pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
-
-
-@pytest.fixture
 def scene(fresh):
     """The room, with a box whose edges are drawn."""
     scene = box(fresh, samples=4)

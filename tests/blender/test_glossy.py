@@ -19,11 +19,6 @@ def scene(fresh):
     return scene
 
 
-@pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
-
-
 def metal(name, rough):
     material = bpy.data.materials.new(name)
     shader = material.node_tree.nodes["Principled BSDF"]

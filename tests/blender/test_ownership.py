@@ -18,11 +18,6 @@ def scene(fresh):
 
 
 @pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
-
-
-@pytest.fixture
 def with_views(scene):
     """A lit scene with two automatic views: four helper scenes."""
     scene.afterlight.method, scene.afterlight.view_count = "RADIOSITY", 2

@@ -13,11 +13,6 @@ from scenes import box, differences, put, read_rgb, render, simple_tree, wall, w
 
 
 @pytest.fixture
-def addon(afterlight):
-    return afterlight.addon
-
-
-@pytest.fixture
 def share(addon):
     return addon.scene.transmittance.transmitted_share
 
