@@ -15,181 +15,21 @@ import sys
 import tempfile
 import traceback
 from pathlib import Path
-from statistics import median
 
 import session
 
 from .. import ROOT, figures
-from . import accuracy_report, candidates, metrics, references, visible
+from . import accuracy_report, candidates, measuring, references
 
-KINDS = "indirect", "final"
-CLEARLY = 5  # an error must be this many times the reference's own noise
-LEAST_SHARE = 0.001  # of the frame, for a table of what is not diffuse
+PRESETS = "draft,paper,production"
 FAILED, SKIPPED = 1, 2
-
-
-def measure(path, options, afterlight):
-    """One scene's entry of accuracy.json; its contact sheet goes to options.out. Raises candidates.Unmeasurable."""
-    scene = candidates.open_scene(path, options.size, options.samples, afterlight)
-    shown = candidates.all_of(afterlight, options.bounces, options.presets)
-    plain = candidates.render_all(scene, shown, options.rounds, afterlight)
-    truth = references.Truth(scene, options.bounces, references.source_key(path))
-    surface = (plain.passes.depth > 0) & (plain.passes.depth < 1e9)
-    rendered = converge(truth, shown, surface, options)
-    masks = masks_of(truth, surface)
-    tables = [table(truth, rendered, kind, mask) for kind, mask in masks.items()]
-    for one, mask in zip(tables, masks.values(), strict=True):
-        add_visible(one, rendered, truth, mask)
-    entry = {
-        "tables": tables,
-        "whole": whole_pictures(scene, rendered, truth),
-        "samples": {str(number): 2 * each.samples for number, each in truth.of.items()},
-    }
-    sheet = options.out / f"{options.name}.webp"
-    accuracy_report.sheet(rendered, truth.indirect(truth.longest), truth.final(truth.longest), surface, sheet)
-    if not options.no_causes:
-        entry["causes"] = causes_of(afterlight, scene, plain, truth, masks["diffuse"])
-    return entry
-
-
-def converge(truth, shown, surface, options):
-    """Give the references samples until every error is clear of their noise, or until they have the most allowed.
-    Returns all candidates, Cycles' references with fewer bounces among them."""
-    for number in truth.of:
-        truth.extend(number, options.first_samples // 2)
-    while True:
-        rendered = shown + [shorter(truth, number) for number in truth.of if 0 <= number < truth.longest]
-        noisy = {
-            number
-            for kind, mask in masks_of(truth, surface).items()
-            for number in too_noisy(table(truth, rendered, kind, mask, flip=False))
-        }
-        more = [number for number in sorted(noisy) if 4 * truth.of[number].samples <= options.most_samples]
-        if not more:
-            return rendered
-        for number in more:
-            print(f"  Cycles, {number} bounces: {4 * truth.of[number].samples} samples", file=sys.stderr)
-            truth.extend(number, 2 * truth.of[number].samples)
-
-
-def shorter(truth, bounces):
-    """A reference with fewer bounces, as a candidate."""
-    name = "Cycles, direct light only" if bounces == 0 else f"Cycles, {bounces} bounce{'s' * (bounces > 1)}"
-    made = candidates.Candidate(name, "Cycles, fewer bounces", None, None)
-    made.final, made.indirect, made.bounces = truth.final(bounces), truth.indirect(bounces), bounces
-    return made
-
-
-def masks_of(truth, surface):
-    """{"diffuse", and "not diffuse" where there is enough of it: (H, W) bool}."""
-    other = truth.of[truth.longest].not_diffuse() & surface
-    masks = {"diffuse": surface & ~other}
-    return masks | ({"not diffuse": other} if other.mean() > LEAST_SHARE else {})
-
-
-def table(truth, rendered, kind, mask, flip=True):
-    """The rows of one kind of surface. An error that the reference's noise could have made is never given; what the
-    true one is about is, and at most: what was measured and that noise together. Energy is a mean of so many pixels
-    that noise is none there."""
-    pictures = {"indirect": truth.indirect(truth.longest), "final": truth.final(truth.longest)}
-    noise, first, rows = truth.noise(mask), rendered[0], []
-    for each in rendered:
-        row = {"name": each.name, "group": each.group}
-        rows.append(row)
-        if each.failure:
-            row["failed"] = each.failure
-            continue
-        if each.seconds:
-            row["seconds"] = median(each.seconds)
-            row["cost"] = median(own / base for own, base in zip(each.seconds, first.seconds, strict=True))
-        for picture in [kind for kind in KINDS if getattr(each, kind) is not None]:
-            found = metrics.compare(getattr(each, picture), pictures[picture], mask, flip)
-            level = (noise if each.bounces is None else truth.noise(mask, each.bounces))[picture]
-            spoilt = None not in (level, found["l1"]) and found["l1"] < CLEARLY * level
-            row[picture] = (
-                found
-                if not spoilt
-                else {
-                    "energy": found["energy"],
-                    "at_most": found["l1"] + level,
-                    "about": None
-                    if each.bounces is not None
-                    else metrics.l1_without_noise(
-                        getattr(each, picture),
-                        *(getattr(truth, picture)(truth.longest, half) for half in range(2)),
-                        mask,
-                    ),
-                    "refused": f"the reference's noise, {level:.4f}, is over a fifth of the error",
-                    "bounces": sorted({truth.longest, each.bounces} - {None}),
-                }
-            )
-    whole = pictures["indirect"][mask].mean(dtype=float)
-    world = 1 - truth.bounced(truth.longest)[mask].mean(dtype=float) / whole if whole > 0 else 0.0
-    return {"surface": kind, "share": float(mask.mean()), "world": float(world), "noise": noise, "rows": rows}
-
-
-def add_visible(one_table, rendered, truth, mask):
-    """Blotches and dots of the light, in each row of a table. Where a way has no indirect light by itself, the error of
-    its whole picture counts as the light's."""
-    indirect, final = truth.indirect(truth.longest), truth.final(truth.longest)
-    halves = [truth.indirect(truth.longest, half) for half in range(2)]
-    for row, each in zip(one_table["rows"], rendered, strict=True):
-        if each.failure or each.bounces is not None:
-            continue
-        light = each.indirect if each.indirect is not None else each.final - final + indirect
-        row["visible"] = {
-            "blotches": visible.blotches(light, indirect, mask, halves),
-            "dots": visible.dots(light, indirect, mask, halves),
-        }
-
-
-def whole_pictures(scene, rendered, truth):
-    """{way: {"cycles", "reachable"}}: LDR-FLIP of the whole picture as the scene's view transform shows it, against
-    Cycles and against the reachable picture."""
-    eevee = rendered[0]
-    best = visible.reachable(eevee.final, eevee.indirect, truth.indirect(truth.longest))
-    shown = {"cycles": truth.final(truth.longest), "reachable": best}
-    shown = {name: visible.displayed(scene, picture) for name, picture in shown.items()}
-    found = {}
-    for each in rendered:
-        if not each.failure and each.bounces is None:
-            own = visible.displayed(scene, each.final)
-            found[each.name] = {name: visible.ldr_flip(own, other) for name, other in shown.items()}
-    return found
-
-
-def too_noisy(one_table):
-    """Numbers of bounces whose references spoil a row of a table."""
-    return {
-        number for row in one_table["rows"] for picture in KINDS for number in row.get(picture, {}).get("bounces", ())
-    }
-
-
-def causes_of(afterlight, scene, plain, truth, mask):
-    """Where the error of the preset Paper comes from."""
-    from ..cost import bench
-    from . import causes
-
-    bench.use_preset("paper", afterlight)
-    settings = afterlight.addon.properties.light_settings(scene.afterlight, scene.frame_current)
-    return causes.measure(
-        afterlight,
-        scene,
-        plain.passes,
-        plain.camera,
-        settings,
-        truth.of[0].white_direct(),
-        truth.bounced(1),
-        truth.bounced(truth.longest),
-        mask,
-    )
 
 
 def measure_one(options):
     """In a process of its own: the entry of one file into options.into."""
     afterlight = session.enable_afterlight()
     try:
-        entry = measure(options.blends[0], options, afterlight)
+        entry = measuring.measure(options.blends[0], options, afterlight)
     except candidates.Unmeasurable as reason:
         entry = {"skipped": str(reason)}
     except Exception as error:  # one file's trouble must not cost the others' numbers
@@ -240,7 +80,7 @@ def measure_all(options):
         "cores": os.cpu_count(),
         "best": candidates.BEST,
         "cycles": references.SETTINGS,
-        "clearly": CLEARLY,
+        "clearly": measuring.CLEARLY,
         "not_diffuse": references.NOT_DIFFUSE,
         "scenes": scenes,
     }
@@ -252,7 +92,7 @@ def verdict(scene):
         return f"skipped, it cannot be measured: {scene['skipped']}"
     if trouble := troubles(scene):
         return f"not all is measured: {'; '.join(trouble)}"
-    if any(map(too_noisy, scene["tables"])):
+    if any(map(measuring.too_noisy, scene["tables"])):
         return "measured; where the reference is too noisy for an error, only what it is at most (--most-samples)"
     return "measured"
 
@@ -280,23 +120,25 @@ def arguments_of(options):
     given = ["--out", str(options.out), "--size", "x".join(map(str, options.size))]
     for name in ("bounces", "samples", "rounds", "first_samples", "most_samples"):
         given += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
-    return given + ["--presets", ",".join(options.presets)] + ["--no-causes"] * options.no_causes
+    return given + ["--presets", ",".join(options.presets)] + ["--causes"] * options.causes
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="benchmarks.accuracy", description="Afterlight's error beside EEVEE's.")
-    parser.add_argument("blends", nargs="*", type=Path, metavar="FILE.blend", help="all of sample_blends/ without")
+    parser.add_argument(
+        "blends", nargs="*", type=Path, metavar="FILE.blend", help="the matt and the artists' samples without"
+    )
     parser.add_argument("--scenes", type=Path, metavar="FOLDER", help="every .blend file in it and below")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="folder; build/accuracy")
     parser.add_argument("--page", type=Path, help="the tables in Markdown; accuracy.md in that folder")
     parser.add_argument("--size", type=picture_size, default=(320, 180), metavar="WxH", help="320x180")
     parser.add_argument("--bounces", type=int, default=4, help="diffuse bounces of the reference; 4")
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's; 16")
-    parser.add_argument("--presets", default="", help="Afterlight's, as draft,paper; all that there are")
-    parser.add_argument("--rounds", type=int, default=2, help="timed frames of each; 2")
+    parser.add_argument("--presets", default=PRESETS, help=f"Afterlight's; {PRESETS}")
+    parser.add_argument("--rounds", type=int, default=3, help="timed frames of each; 3, of slow ones 1")
     parser.add_argument("--first-samples", type=int, default=64, help="of a reference, to begin with; 64")
     parser.add_argument("--most-samples", type=int, default=4096, help="of a reference, at most; 4096")
-    parser.add_argument("--no-causes", action="store_true", help="leave out where the error comes from")
+    parser.add_argument("--causes", action="store_true", help="also where the error of the preset Paper comes from")
     parser.add_argument("--name", help=argparse.SUPPRESS)
     parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
@@ -318,7 +160,7 @@ def parse(arguments):
     if options.scenes and not (below := sorted(options.scenes.rglob("*.blend"))):
         parser.error(f"there is no .blend file in {options.scenes}")
     chosen = [*options.blends, *(below if options.scenes else ())]
-    options.blends = [path.resolve() for path in chosen or candidates.diffuse_samples()]
+    options.blends = [path.resolve() for path in chosen or candidates.samples()]
     options.out = options.out.resolve()
     options.page = (options.page or options.out / "accuracy.md").resolve()
     return options

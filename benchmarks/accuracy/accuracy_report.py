@@ -12,29 +12,18 @@ import os
 from pathlib import Path
 from statistics import mean
 
-import matplotlib
-import numpy as np
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
-
-from .. import figures
-from . import metrics
+from . import accuracy_plots, metrics
+from .visible import NOISE, REACHABLE
 
 PICTURES = {"indirect": "Indirect light", "final": "Final image"}
 PLOT, STUDY = "error_against_cost.webp", "eevee_study.json"
-CURVES = {"EEVEE": "s", "EEVEE ray tracing": "D", "Afterlight": "o", "Cycles": "^", "Cycles, denoised": "v"}
-COLORS = dict(zip(CURVES, ("0.35", "tab:blue", "tab:orange", "tab:green", "tab:purple"), strict=True))
-SHEET_GROUPS = {"EEVEE", "EEVEE ray tracing", "Afterlight", "Cycles, denoised"}
-LIFT = 2.0  # stops, by which the contact sheets look into the shadows
 
 
 def write(path, page):
     """The page `page`, a page a scene and the plot from an accuracy.json, whose folder holds the pictures."""
     found, folder = json.loads(path.read_text()), path.parent
     if measured(found):
-        plot(found, folder / PLOT)
+        accuracy_plots.plot(measured(found), folder / PLOT)
     for scene in found["scenes"]:
         text = "\n\n".join(
             [
@@ -56,22 +45,14 @@ def markdown(found, folder, study=None):
     """The page. folder: of the pictures and of the scenes' pages, seen from the page."""
     parts = [
         "# Accuracy",
-        f"The error of EEVEE, its ray tracing and Afterlight against Cycles with {found['bounces']} diffuse "
-        "bounces, at "
-        f"{found['size'][0]} x {found['size'][1]} and {found['samples']} EEVEE samples. Measured at commit "
+        "How near EEVEE, its ray tracing, Afterlight and Cycles with few samples and its denoiser come to Cycles with "
+        f"many samples and {found['bounces']} diffuse bounces, at {found['size'][0]} x {found['size'][1]} and "
+        f"{found['samples']} EEVEE samples. Measured at commit "
         f"{found.get('commit', 'before 0.4.0, see the page in the history')} on {found['machine']} by",
         f"    {found['command']}",
-        "- *Indirect light*: bounced diffuse light, albedo included, and the direct light of meshes and world. "
-        "Afterlight's is what it adds to the picture, plus the world's light in EEVEE's.\n"
-        "- *Energy*: mean over the reference's. *Relative L1*: mean difference over the reference's mean. "
-        "*relMSE*: mean "
-        f"of squared difference over squared reference + {metrics.EPSILON}. *99.9 %*: ratio of those percentiles. "
-        "*HDR-FLIP*: the error as an eye sees it. *Cost*: seconds of a frame over plain EEVEE's beside it.\n"
-        "- The reference is two independent halves, whose difference is its noise. Errors under "
-        f'{found["clearly"]} times the noise are refused; "a, < b" is an estimate and an upper bound.',
     ]
     if measured(found):
-        parts += [f"![Error against cost]({folder}/{PLOT})", *means(found), *by_scene(found, folder)]
+        parts += [*seen(found, folder), *light(found, folder)]
     if missing := [scene for scene in found["scenes"] if "tables" not in scene]:
         parts += ["\n".join(f"- {scene['name']}: {not_measured(scene)}" for scene in missing)]
     if study:
@@ -79,39 +60,118 @@ def markdown(found, folder, study=None):
     return "\n\n".join(parts) + "\n"
 
 
-def by_scene(found, folder):
-    """A row a scene: relative L1 of the indirect light by each way, and the way to the scene's own page."""
+def seen(found, folder):
+    """The whole pictures and their cost: means over the scenes, the plot, and a row a scene."""
+    scenes = measured(found)
+    names = [name for name in ways(scenes) if any("cost" in row for row in rows_called(scenes, name))]
     rows = []
-    for scene in measured(found):
-        (one,) = [one for one in scene["tables"] if one["surface"] == "diffuse"][:1] or [None]
-        errors = {row["name"]: cells(row, "indirect")[2] for row in one["rows"]} if one else {}
-        rows.append((f"[{scene['name']}]({folder}/{scene['name']}.md)", errors))
-    names = [name for name in dict.fromkeys(name for _, errors in rows for name in errors) if "Cycles, " not in name]
+    for name in [*names, REACHABLE, NOISE]:
+        own = rows_called(scenes, name)
+        pictures = [scene["whole"].get(name, {}) for scene in scenes]
+        marks = [row.get("visible", {}) for row in own]
+        rows.append(
+            [
+                name,
+                *(number(average([each.get(key) for each in pictures])) for key in ("cycles", "reachable")),
+                number(average([each.get("blotches") for each in marks] or [None])),
+                number(average([each.get("dots") for each in marks] or [None]), 0),
+                *costs(own),
+            ]
+        )
+    by_scene = [
+        [
+            f"[{scene['name']}]({folder}/{scene['name']}.md)",
+            *(number(scene["whole"].get(name, {}).get("cycles")) for name in [*names, REACHABLE, NOISE]),
+            "–" if scene.get("caustics") is None else f"{scene['caustics']:.0%}",
+        ]
+        for scene in scenes
+    ]
     return [
-        "## Scenes",
-        "Relative L1 of the indirect light on diffuse surfaces. Each scene has a page with all numbers, a "
-        "contact sheet "
-        "and the causes of the error of the preset Paper.",
-        grid(["scene", *names], [[link, *(errors.get(name, "–") for name in names)] for link, errors in rows]),
+        "## The whole picture, and its cost",
+        f"Means over {len(scenes)} scenes; a dash where a scene has no number.",
+        grid(
+            [
+                "",
+                "LDR-FLIP against Cycles",
+                "against the reachable picture",
+                "blotches",
+                "dots per million",
+                "cost",
+                "graphics card",
+                "host",
+            ],
+            rows,
+        ),
+        "- *LDR-FLIP*: the error as an eye sees it, of the whole picture through the scene's view transform.\n"
+        f"- The *reachable picture* is {REACHABLE} in place of its own: its reflections, refractions, shadows and "
+        "direct light are not Afterlight's to change. Its row is the error that is EEVEE's own.\n"
+        "- *Blotches*: root mean square of the relative error of the light between 4 and 32 pixels across, on diffuse "
+        "surfaces. *Dots*: pixels whose error stands out from their neighbours' by a quarter of the brightness there. "
+        "The reference's own are taken off.\n"
+        "- *Cost*: seconds of a frame over plain EEVEE's beside it. Of that, *graphics card*: EEVEE's drawing and "
+        "Afterlight's shaders; *host*: evaluation, files, placing of views, which take the same on any machine with "
+        "such a processor. **Here the graphics card is software, on the same processor as Cycles: that flatters "
+        "Cycles.** On a graphics card the first share nearly vanishes.\n"
+        f"- *{NOISE}*: LDR-FLIP that the reference's noise may have in each number.",
+        f"![Error against cost]({folder}/{PLOT})",
+        "LDR-FLIP against Cycles, scene by scene. Each has a page with all numbers and a contact sheet. *Caustics*: "
+        "share of the indirect light on diffuse surfaces that comes by way of gloss and glass, which EEVEE has not.",
+        grid(["scene", *names, REACHABLE, NOISE, "caustics"], by_scene),
     ]
 
 
-def means(found):
-    """A table of means over the scenes."""
-    tables = [one for scene in measured(found) for one in scene["tables"] if one["surface"] == "diffuse"]
-    names = list(dict.fromkeys(row["name"] for one in tables for row in one["rows"]))
+def ways(scenes):
+    """Names of all ways to render, in their order."""
+    return list(dict.fromkeys(row["name"] for scene in scenes for row in accuracy_plots.rows_of(scene)))
+
+
+def rows_called(scenes, name):
+    """A way's rows of the tables of diffuse surfaces; {} where a scene has none."""
+    if name in (REACHABLE, NOISE):
+        return []
+    return [
+        next((row for row in accuracy_plots.rows_of(scene) if row["name"] == name), {"name": name}) for scene in scenes
+    ]
+
+
+def costs(rows):
+    """[cost, graphics card's share of it, host's]."""
+    cost, host = (average([row.get(key) for row in rows] or [None]) for key in ("cost", "host"))
+    if rows and rows[0].get("group", "").startswith("Cycles"):
+        return [number(cost, 2), number(None), number(None)]
+    return [number(cost, 2), number(None if None in (cost, host) else cost - host, 2), number(host, 2)]
+
+
+def light(found, folder):
+    """The light alone, on diffuse surfaces: means over the scenes, and a row a scene."""
+    scenes = measured(found)
     averaged = []
-    for name in names:
-        rows = [row for one in tables for row in one["rows"] if row["name"] == name]
+    for name in ways(scenes):
+        rows = rows_called(scenes, name)
         averaged.append(
             {"name": name}
             | {picture: mean_of([row.get(picture, {}) for row in rows]) for picture in PICTURES}
             | {"cost": average([row.get("cost") for row in rows])}
         )
+    names = [row["name"] for row in averaged if row["indirect"]["l1"] is not None or "at_most" in row["indirect"]]
+    by_scene = []
+    for scene in scenes:
+        errors = {row["name"]: cells(row, "indirect")[2] for row in accuracy_plots.rows_of(scene)}
+        by_scene.append([f"[{scene['name']}]({folder}/{scene['name']}.md)", *(errors.get(name, "–") for name in names)])
     return [
-        "## Mean over the scenes",
-        f"Diffuse surfaces of {len(tables)} scenes; a dash where a scene has no number.",
+        "## The light alone",
+        "- *Indirect light*: bounced diffuse light, albedo included, and the direct light of meshes and world. "
+        "Afterlight's is what it adds to the picture, plus the world's light in EEVEE's. Cycles' denoiser works on the "
+        "whole picture: with it there is no indirect light by itself.\n"
+        "- *Energy*: mean over the reference's. *Relative L1*: mean difference over the reference's mean. *relMSE*: "
+        f"mean of squared difference over squared reference + {metrics.EPSILON}. *99.9 %*: ratio of those percentiles. "
+        "*HDR-FLIP*: FLIP at all exposures.\n"
+        "- The reference is two independent halves, whose difference is its noise. Errors under "
+        f'{found["clearly"]} times the noise are refused; "a, < b" is an estimate and an upper bound.',
+        f"Means over the diffuse surfaces of {len(scenes)} scenes:",
         *picture_tables(averaged),
+        "Relative L1 of the indirect light, scene by scene:",
+        grid(["scene", *names], by_scene),
     ]
 
 
@@ -158,7 +218,7 @@ def scene_parts(scene, found):
             *visible_parts(one["rows"]),
         ]
     if "whole" in scene:
-        parts += whole_parts(scene["whole"])
+        parts += whole_parts(scene)
     return parts + cause_parts(scene.get("causes"))
 
 
@@ -183,13 +243,20 @@ def visible_parts(rows):
     ]
 
 
-def whole_parts(whole):
+def whole_parts(scene):
     """LDR-FLIP of the whole picture as it is displayed."""
-    rows = [[name, number(found["cycles"]), number(found["reachable"])] for name, found in whole.items()]
+    kinds = [one["surface"] for one in scene["tables"]]
+    keys = ["cycles", *(f"cycles, {kind}" for kind in kinds), "reachable"]
+    rows = [[name, *(number(found.get(key)) for key in keys)] for name, found in scene["whole"].items()]
+    caustics = scene.get("caustics")
     return [
         "The whole picture through the scene's view transform. The *reachable* picture is EEVEE's own with Cycles' "
-        "indirect light in place of its own.",
-        grid(["LDR-FLIP", "against Cycles", "against the reachable picture"], rows),
+        "indirect light in place of its own; its row is the error that is EEVEE's own."
+        + ("" if caustics is None else f" Caustics are {caustics:.1%} of the indirect light on diffuse surfaces."),
+        grid(
+            ["LDR-FLIP", "against Cycles", *(f"on {kind} surfaces" for kind in kinds), "against the reachable picture"],
+            rows,
+        ),
     ]
 
 
@@ -254,91 +321,6 @@ def grid(head, rows):
 
 def number(value, digits=3):
     return "–" if value is None else f"{value:.{digits}f}"
-
-
-def plot(found, path):
-    """Relative L1 of the indirect light against the cost of a frame: each scene thin, their mean thick."""
-    figure, axes = plt.subplots(figsize=(8, 5), dpi=110, layout="constrained")
-    tables = [one for scene in measured(found) for one in scene["tables"] if one["surface"] == "diffuse"]
-    for group, marker in CURVES.items():
-        lines = [
-            [
-                (row["cost"], row.get("indirect", {}).get("l1"), row["name"])
-                for row in one["rows"]
-                if row["group"] == group and "cost" in row
-            ]
-            for one in tables
-        ]
-        for line in lines:
-            drawn = [point for point in line if point[1]]
-            axes.loglog(
-                [x for x, *_ in drawn],
-                [y for _, y, _ in drawn],
-                "-",
-                marker=marker,
-                color=COLORS[group],
-                alpha=0.25,
-                linewidth=0.7,
-                markersize=3,
-            )
-        names = list(dict.fromkeys(name for line in lines for *_, name in line))
-        points = [[(x, y) for line in lines for x, y, own in line if own == name and y] for name in names]
-        # Only where every scene has the number: a mean over other scenes would be another mean.
-        thick = [(name, np.mean(each, 0)) for name, each in zip(names, points, strict=True) if len(each) == len(tables)]
-        if thick:
-            places = np.array([place for _, place in thick])
-            axes.loglog(*places.T, "-", marker=marker, color=COLORS[group], linewidth=2, markersize=8, label=group)
-            for name, place in thick:
-                axes.annotate(name.rpartition(", ")[2], place, xytext=(6, 5), textcoords="offset points", fontsize=8)
-    axes.set_xlabel("seconds a frame over plain EEVEE's")
-    axes.set_ylabel(f"relative L1 of the indirect light, against Cycles with {found['bounces']} bounces")
-    axes.grid(True, which="both", alpha=0.2)
-    axes.legend()
-    figures.save(figure, path, exact=True)
-
-
-def sheet(rendered, indirect, final, surface, path):
-    """A contact sheet: a row for the reference and each candidate; final image, the same with shadows lifted, indirect
-    light, signed error of it. Where a way has no indirect light by itself, its whole error is the light's."""
-    shown = [each for each in rendered if each.final is not None and each.group in SHEET_GROUPS]
-    rows = [("Cycles", final, indirect)]
-    for each in shown:
-        light = each.indirect if each.indirect is not None else each.final - final + indirect
-        rows.append((each.name, each.final, light))
-    height, width = surface.shape
-    figure, axes = plt.subplots(
-        len(rows), 4, figsize=(13.3, len(rows) * 3.35 * height / width), dpi=80, squeeze=False, layout="constrained"
-    )
-    white, scale = exposure(final[surface]), indirect[surface].mean()
-    for (name, image, light), line in zip(rows, axes, strict=True):
-        line[0].imshow(tone(image / white), interpolation="nearest")
-        line[1].imshow(tone(image * 2**LIFT / white), interpolation="nearest")
-        line[2].imshow(tone(light / max(exposure(indirect[surface]), 1e-30)), interpolation="nearest")
-        error = np.where(surface, (light - indirect).mean(-1) / max(scale, 1e-30), 0)
-        drawn = line[3].imshow(error, cmap="RdBu_r", vmin=-2, vmax=2, interpolation="nearest")
-        line[0].set_ylabel(name, fontsize=8)
-        for each in line:
-            each.set_xticks([])
-            each.set_yticks([])
-    for each, title in zip(
-        axes[0],
-        ("final image", f"final image, {LIFT:+.0f} stops", "indirect light", "error of it, over the reference's mean"),
-        strict=True,
-    ):
-        each.set_title(title, fontsize=9)
-    figure.colorbar(drawn, ax=axes[:, 3], shrink=0.4, extend="both")
-    figures.save(figure, path)
-
-
-def exposure(colors):
-    """The radiance that is shown as white."""
-    return max(float(np.percentile(colors, 99)), 1e-30) if colors.size else 1.0
-
-
-def tone(image):
-    """Linear light as sRGB shows it."""
-    image = np.nan_to_num(image).clip(0, 1)
-    return np.where(image <= 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055)
 
 
 def main():

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..cost import bench
+from ..cost import bench, shares
 from . import references
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_blends"
@@ -47,6 +47,7 @@ DENOISER = {
     "denoising_quality": "HIGH",
 }
 SEED = 1 << 20  # of these: none that a reference uses
+SLOW = 40  # seconds, over which a frame is timed once
 
 
 def diffuse_samples():
@@ -54,6 +55,13 @@ def diffuse_samples():
     from make_samples import DIFFUSE
 
     return sorted(SAMPLES / f"{name}.blend" for name in DIFFUSE)
+
+
+def samples():
+    """Paths of the sample scenes that `make accuracy` measures: the matt ones, and those like artists' scenes."""
+    from make_samples import ARTISTS
+
+    return diffuse_samples() + sorted(SAMPLES / "artists" / f"{name}.blend" for name in ARTISTS)
 
 
 class Unmeasurable(Exception):
@@ -78,7 +86,8 @@ class Candidate:
     scene is rendered so. bounced(scene, final, plain): `indirect` of the frame just rendered.
 
     final: what Blender writes. indirect: the diffuse light in it that no lamp sent directly. seconds: of each timed
-    frame. failure: why there are none. bounces: for references of their own, whose noise counts too.
+    frame; host: those of them that are not the graphics card's. failure: why there are none. bounces: for references of
+    their own, whose noise counts too.
     """
 
     name: str
@@ -88,6 +97,7 @@ class Candidate:
     final: np.ndarray = None
     indirect: np.ndarray = None
     seconds: list = field(default_factory=list)
+    host: list = field(default_factory=list)
     failure: str = ""
     bounces: int | None = None
 
@@ -159,7 +169,6 @@ def all_of(afterlight, bounces, presets=()):
         Candidate("EEVEE ray tracing, default", "EEVEE ray tracing", lambda scene: traced(scene, {}), traced_diffuse),
         Candidate("EEVEE ray tracing, best", "EEVEE ray tracing", lambda scene: traced(scene, BEST), traced_diffuse),
         *(ticked(afterlight, name) for name in presets or named),
-        *(short(bounces, samples) for samples in CYCLES_SAMPLES),
         *(denoised(bounces, samples) for samples in CYCLES_SAMPLES),
     ]
 
@@ -230,20 +239,6 @@ def ticked(afterlight, preset):
     )
 
 
-def short(bounces, samples):
-    """Cycles with few samples."""
-
-    def bounced(scene, final, plain):
-        return references.with_alone(scene, references.read(scene)["indirect"], samples, SEED)
-
-    return Candidate(
-        f"Cycles, {samples} sample{'s' * (samples > 1)}",
-        "Cycles",
-        lambda scene: references.as_cycles(scene, bounces, samples, SEED),
-        bounced,
-    )
-
-
 def denoised(bounces, samples):
     """Cycles with few samples and Blender's denoiser as it comes: OpenImageDenoise with albedo and normal. It works on
     the whole picture, so there is no indirect light by itself."""
@@ -269,24 +264,46 @@ def denoised(bounces, samples):
 
 
 def render_all(scene, candidates, rounds, afterlight):
-    """Fill in the candidates and return Plain. Every frame once to warm up, then `rounds` times in turn, so that a busy
-    machine slows all alike."""
+    """Fill in the candidates and return Plain. Frames are timed in turn, `rounds` times, so that a busy machine slows
+    all alike; a frame that takes over SLOW seconds but once."""
+    compile_shaders(scene, candidates)
     plain = None
-    for number in range(rounds + 1):
+    for number in range(rounds):
         for candidate in candidates:
-            if candidate.failure or (number == 0 and candidate.group.startswith("Cycles")):  # Cycles compiles nothing
+            if candidate.failure or (number and candidate.seconds[0] > SLOW):
                 continue
             with candidate.mode(scene):
-                seconds, final = written(scene)
+                with shares.clock() as clock:
+                    seconds, final = written(scene)
                 if scene.afterlight.enabled and scene.afterlight.report:
                     candidate.failure = scene.afterlight.report
                     continue
-                if number:
-                    candidate.seconds.append(seconds)
-                if number == rounds:
+                candidate.seconds.append(seconds)
+                candidate.host.append(seconds - clock.gpu)
+                if number == 0:
                     plain = plain or look(scene, final, afterlight)
                     candidate.final, candidate.indirect = final, candidate.bounced(scene, final, plain)
     return plain
+
+
+def compile_shaders(scene, candidates):
+    """Frames of one sample, so that no timed one compiles: that takes seconds. (Cycles on processors compiles nothing.)
+    Where such a frame is slow by itself, that hardly shows in the others."""
+    import bpy
+
+    samples = scene.eevee.taa_render_samples
+    scene.eevee.taa_render_samples = 1
+    try:
+        for candidate in candidates:
+            if candidate.group.startswith("Cycles"):
+                continue
+            with candidate.mode(scene):
+                start = time.perf_counter()
+                bpy.ops.render.render(scene=scene.name)
+                if time.perf_counter() - start > SLOW:
+                    return
+    finally:
+        scene.eevee.taa_render_samples = samples
 
 
 def written(scene):

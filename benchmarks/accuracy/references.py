@@ -66,10 +66,11 @@ class Reference:
     samples: of each half so far. halves: [{name in KEPT: (H, W, 3) float64}] * 2, empty before the first samples.
     """
 
-    def __init__(self, scene, bounces, source, folder=CACHE):
-        """source: what source_key() says of the file. folder: where references are kept."""
-        self.scene, self.bounces = scene, bounces
-        self.path = folder / f"{key(scene, bounces, source)}.npz"
+    def __init__(self, scene, bounces, source, folder=CACHE, caustics=True):
+        """source: what source_key() says of the file. folder: where references are kept. caustics: whether light that
+        gloss and glass send to diffuse surfaces counts."""
+        self.scene, self.bounces, self.caustics = scene, bounces, caustics
+        self.path = folder / f"{key(scene, bounces, source, caustics)}.npz"
         self.samples, self.halves = 0, [{}, {}]
         self._read()
 
@@ -79,7 +80,7 @@ class Reference:
             more = self.samples or samples  # twice as many each time
             for index, half in enumerate(self.halves):
                 # Halves of the same length share seeds across numbers of bounces: their difference is then less noisy.
-                fresh = render(self.scene, self.bounces, more, seed=2 * self.samples + index)
+                fresh = render(self.scene, self.bounces, more, 2 * self.samples + index, self.caustics)
                 for name in KEPT:
                     half[name] = (half.get(name, 0) * self.samples + fresh[name] * more) / (self.samples + more)
             self.samples += more
@@ -124,11 +125,14 @@ class Reference:
 
 
 class Truth:
-    """All references of one scene: {0, 1, N: Reference}, MESHES where meshes shine, WORLD where the world does."""
+    """All references of one scene: {N: Reference}, MESHES where meshes shine, WORLD where the world does; and 0 and 1
+    where shorter paths are asked for."""
 
-    def __init__(self, scene, bounces, source, folder=CACHE):
+    def __init__(self, scene, bounces, source, folder=CACHE, shorter=False):
+        self.scene, self.source, self.folder = scene, source, folder
         self.alone = alone(scene)
-        self.of = {number: Reference(scene, number, source, folder) for number in sorted({0, 1, bounces} | self.alone)}
+        numbers = {bounces} | self.alone | ({0, 1} if shorter else set())
+        self.of = {number: Reference(scene, number, source, folder) for number in sorted(numbers)}
         self.longest = bounces
 
     def extend(self, bounces, samples):
@@ -179,7 +183,7 @@ def source_key(path):
     return found.hexdigest()
 
 
-def key(scene, bounces, source):
+def key(scene, bounces, source, caustics=True):
     """Name of a reference in the cache: the same file, settings and Blender give the same picture."""
     import bpy
 
@@ -195,16 +199,18 @@ def key(scene, bounces, source):
         "blender": bpy.app.version_string,
         "build": bpy.app.build_hash.decode(),
     }
+    if not caustics:
+        settings["caustics"] = False
     if shadowless(scene):
         settings["shadowless"] = "without multiple importance sampling"
     return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()
 
 
-def render(scene, bounces, samples, seed):
+def render(scene, bounces, samples, seed, caustics=True):
     """{name in KEPT: (H, W, 3) float32} by Cycles. The scene is as before afterwards."""
     import bpy
 
-    with as_cycles(scene, bounces, samples, seed):
+    with as_cycles(scene, bounces, samples, seed, caustics):
         bpy.ops.render.render(scene=scene.name)
         return read(scene)
 
@@ -228,7 +234,7 @@ def read(scene):
 
 
 @contextmanager
-def as_cycles(scene, bounces, samples, seed=0):
+def as_cycles(scene, bounces, samples, seed=0, caustics=True):
     """The scene set up for Cycles; without diffuse bounces, and for the world alone, its emissive meshes light nothing
     diffuse."""
     wanted = SETTINGS | {
@@ -237,6 +243,8 @@ def as_cycles(scene, bounces, samples, seed=0):
         "seed": seed,
         "filter_width": scene.render.filter_size,
     }
+    if not caustics:
+        wanted |= {"caustics_reflective": False, "caustics_refractive": False}
     changes = [(scene.cycles, name, value) for name, value in wanted.items()]
     changes += [(layer(scene), f"use_pass_{name}", True) for name in PASSES]
     changes += [(lamp, "visible_camera", False) for lamp in lamps(scene)]  # EEVEE shows none

@@ -7,7 +7,7 @@ for displayed().
 
 import numpy as np
 
-NAMES = {"ldr_flip": "LDR-FLIP", "blotches": "blotches", "dots": "dots"}
+REACHABLE, NOISE = "EEVEE with Cycles' indirect light", "Cycles' own noise"  # beside the ways that are compared
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 FINEST, COARSEST = 4, 32  # pixels across: the band that blotches() looks at; finer is grain, coarser a shift of light
 DARKEST = 0.05  # of the mean light: by less no error is divided
@@ -63,19 +63,22 @@ def dots(light, reference, mask, halves=None):
     return float(1e6 * found / max(np.count_nonzero(counted), 1))
 
 
-def ldr_flip(picture, reference, mask=None):
-    """Mean LDR-FLIP error of two displayed pictures, (H, W, 3) in 0..1, encoded as the screen has them (sRGB), at the
-    viewing distance that FLIP assumes. mask: what counts; outside it both are taken for equal."""
+def ldr_flip(picture, reference):
+    """Mean LDR-FLIP error of two displayed pictures: see flip_map()."""
+    return float(flip_map(picture, reference).mean(dtype=np.float64))
+
+
+def flip_map(picture, reference):
+    """(H, W): LDR-FLIP error of two displayed pictures, (H, W, 3) in 0..1, encoded as the screen has them (sRGB), at
+    the viewing distance that FLIP assumes."""
     import flip_evaluator
 
     reference = np.ascontiguousarray(reference, np.float32).clip(0, 1)
     picture = np.ascontiguousarray(picture, np.float32).clip(0, 1)
-    if mask is not None:
-        picture = np.where(mask[..., None], picture, reference)
     error, _, _ = flip_evaluator.evaluate(
         reference, picture, "LDR", inputsRGB=True, applyMagma=False, computeMeanError=False
     )
-    return float(error[..., 0][slice(None) if mask is None else mask].mean(dtype=np.float64))
+    return error[..., 0]
 
 
 def displayed(scene, picture, stops=0.0):

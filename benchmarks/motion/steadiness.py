@@ -58,7 +58,7 @@ def ways_of(afterlight):
     ways = [
         (each, False)
         for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"])
-        if each.group != "Cycles"
+        if not each.group.startswith("Cycles")
     ]
     anew = candidates.ticked(afterlight, "production")
     anew.name += ", views placed anew"

@@ -4,6 +4,7 @@
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import bpy
@@ -15,7 +16,8 @@ import scenes
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
 
-from benchmarks.accuracy import accuracy, accuracy_report, metrics, references
+from benchmarks.accuracy import accuracy, accuracy_report, candidates, measuring, metrics, references
+from benchmarks.cost import shares
 
 SHAPE = 24, 32
 
@@ -98,7 +100,7 @@ def test_an_error_is_told_from_the_noise_of_its_reference(spread):
 
 
 class MadeUpTruth:
-    """References with a set error of their own, for accuracy.table()."""
+    """References with a set error of their own, for measuring.table()."""
 
     longest = 4
 
@@ -118,12 +120,12 @@ class MadeUpTruth:
 def test_numbers_that_noise_could_have_made_are_refused(picture, noise, refused):
     """An error of 10 % with a reference of 1.9 % and of 2.1 %: a fifth is 2 %. What the true error is at most is
     given."""
-    candidate = accuracy.candidates.Candidate("Ten per cent", "Afterlight", None, None)
+    candidate = candidates.Candidate("Ten per cent", "Afterlight", None, None)
     candidate.final = candidate.indirect = picture * np.float32(1.1)
-    found = accuracy.table(MadeUpTruth(picture, noise), [candidate], "diffuse", everywhere(), flip=False)
+    found = measuring.table(MadeUpTruth(picture, noise), [candidate], "diffuse", everywhere(), flip=False)
     (row,) = found["rows"]
     assert ("refused" in row["indirect"]) == refused and ("l1" in row["indirect"]) != refused
-    assert accuracy.too_noisy(found) == ({4} if refused else set())
+    assert measuring.too_noisy(found) == ({4} if refused else set())
     scene = {"tables": [found]}
     assert ("at most" in accuracy.verdict(scene)) == refused
     assert row["indirect"]["energy"] == pytest.approx(1.1, rel=1e-5)
@@ -179,9 +181,24 @@ def test_direct_light_of_lamps_and_of_meshes_is_all_there_is(shot):
     assert meshes > 0.02 * both and lamps + meshes == pytest.approx(both, rel=0.01)
 
 
+def test_light_by_way_of_a_mirror_can_be_left_out(shot, tmp_path):
+    """A wall that is a mirror sends the lamp's light to the others: caustics, of which a matt room has none."""
+    matt_room, mirror = [], bpy.data.materials["Red"].node_tree.nodes["Principled BSDF"].inputs
+    for metallic in (0, 1):
+        mirror["Metallic"].default_value, mirror["Roughness"].default_value = metallic, 0.1
+        mirror["Base Color"].default_value = (0.9, 0.9, 0.9, 1)
+        matt_room.append(
+            [references.render(shot, 1, 64, 3, caustics=caustics)["indirect"].mean() for caustics in (True, False)]
+        )
+    (without, same), (whole, less) = matt_room
+    assert same == pytest.approx(without, rel=1e-6) and less < 0.95 * whole
+    keys = {references.key(shot, 1, "a file"), references.key(shot, 1, "a file", caustics=False)}
+    assert len(keys) == 2
+
+
 def test_noise_that_two_references_share_does_not_count_twice(shot, tmp_path):
     """Less of the same light has less noise above it: none above all of it, the whole noise above none of it."""
-    truth, mask = references.Truth(shot, 2, "a file", tmp_path), np.ones((9, 16), bool)
+    truth, mask = references.Truth(shot, 2, "a file", tmp_path, shorter=True), np.ones((9, 16), bool)
     for bounces in truth.of:
         truth.extend(bounces, 8)
     none, one, all_of_it = (truth.noise(mask, without)["indirect"] for without in (0, 1, 2))
@@ -190,7 +207,7 @@ def test_noise_that_two_references_share_does_not_count_twice(shot, tmp_path):
 
 def test_default_ray_tracing_is_that_of_a_new_file(fresh):
     """Whatever was set before; and what is asked for is set."""
-    eevee, candidates = fresh.eevee, accuracy.candidates
+    eevee = fresh.eevee
 
     def state():
         return {path: eevee.path_resolve(path) for path in candidates.tracing_settings(eevee)}
@@ -250,6 +267,7 @@ def test_a_run_of_it_all(shot, tmp_path):
             "64",
             "--most-samples",
             "256",
+            "--causes",
         ],
         cwd=ROOT,
         capture_output=True,
@@ -269,6 +287,7 @@ def test_a_run_of_it_all(shot, tmp_path):
     assert 0 < clean["visible"]["blotches"] < 1 and lit["visible"]["dots"] >= 0
     whole = found["good"]["whole"]
     assert whole["Afterlight, Paper"]["cycles"] < whole["EEVEE"]["cycles"] and whole["EEVEE"]["reachable"] > 0
+    assert whole["EEVEE with Cycles' indirect light"]["reachable"] == 0 < lit["host"] < lit["cost"]
     scene_page = (out / "good.md").read_text()
     assert "LDR-FLIP" in scene_page and "blotches" in scene_page
     gains = [
@@ -291,3 +310,20 @@ def test_a_folder_of_scenes(tmp_path, capsys):
     with pytest.raises(SystemExit):
         accuracy.parse(["--scenes", str(tmp_path / "none")])
     assert "no .blend file" in capsys.readouterr().err
+
+
+def test_seconds_of_the_graphics_card_are_some_of_a_frames(shot):
+    """Those of a frame grow with its samples, and a render by Cycles has none."""
+    bpy.ops.render.render()
+    found = []
+    for samples in (1, 64):
+        shot.eevee.taa_render_samples = samples
+        start = time.perf_counter()
+        with shares.clock() as clock:
+            bpy.ops.render.render()
+        found.append((clock.gpu, time.perf_counter() - start))
+    (few, whole), (many, longer) = found
+    assert 0 < few < whole and few < many < longer and longer - many < 0.5 * longer
+    with references.as_cycles(shot, 1, 1), shares.clock() as clock:
+        bpy.ops.render.render()
+    assert clock.gpu == 0

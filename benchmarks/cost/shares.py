@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which seconds of a render are the graphics card's, and which the host's.
+
+    with shares.clock() as clock:
+        bpy.ops.render.render()
+    clock.gpu       # seconds
+
+The host's are the same on any machine with such a processor: evaluation, placing of views, files, compositing. A
+graphics card has EEVEE, from the end of the evaluation of its scene to its last sample (which holds the hand-over of
+the scene, too: nothing tells where it ends), and the gather, from its first stage to its last."""
+
+import re
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+SAMPLING = "Rendering "  # how EEVEE's messages begin: "Rendering 1 / 16 samples", after a sample
+GATHER = re.compile(r"(?!Saving passes).*, \d+%")  # those of our engine's stages, but for the files'
+
+
+@dataclass
+class Clock:
+    """gpu: seconds of the graphics card so far."""
+
+    gpu: float = 0.0
+
+
+@contextmanager
+def clock():
+    """A Clock of the frames rendered within, complete once the block ends."""
+    import bpy
+
+    found = Clock()
+    evaluated = sampled = gathering = None
+
+    def close_eevee():
+        nonlocal evaluated, sampled
+        if evaluated is not None and sampled is not None:
+            found.gpu += sampled - evaluated
+        evaluated = sampled = None
+
+    def on_evaluated(scene, depsgraph):
+        nonlocal evaluated
+        close_eevee()
+        evaluated = time.perf_counter()
+
+    def on_message(text, *_):
+        nonlocal sampled, gathering
+        now = time.perf_counter()
+        if gathering is not None:
+            found.gpu += now - gathering
+        gathering = now if GATHER.fullmatch(text) else None
+        if text.startswith(SAMPLING):
+            sampled = now
+
+    hooks = (bpy.app.handlers.frame_change_post, on_evaluated), (bpy.app.handlers.render_stats, on_message)
+    for handlers, hook in hooks:
+        handlers.append(hook)
+    try:
+        yield found
+    finally:
+        close_eevee()
+        for handlers, hook in hooks:
+            handlers.remove(hook)
