@@ -21,7 +21,7 @@ import session
 from .. import ROOT, figures
 from . import accuracy_report, candidates, measuring, references
 
-PRESETS = "draft,paper,production"
+WAYS = "eevee,tracing-best,production,cycles-1,cycles-4,cycles-16"
 FAILED, SKIPPED = 1, 2
 
 
@@ -120,10 +120,11 @@ def arguments_of(options):
     given = ["--out", str(options.out), "--size", "x".join(map(str, options.size))]
     for name in ("bounces", "samples", "rounds", "first_samples", "most_samples"):
         given += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
-    return given + ["--presets", ",".join(options.presets)] + ["--causes"] * options.causes
+    return given + ["--ways", ",".join(options.ways)] + ["--causes"] * options.causes
 
 
 def parse(arguments):
+    ways = candidates.names_of_ways()
     parser = argparse.ArgumentParser(prog="benchmarks.accuracy", description="Afterlight's error beside EEVEE's.")
     parser.add_argument(
         "blends", nargs="*", type=Path, metavar="FILE.blend", help="the matt and the artists' samples without"
@@ -134,7 +135,7 @@ def parse(arguments):
     parser.add_argument("--size", type=picture_size, default=(320, 180), metavar="WxH", help="320x180")
     parser.add_argument("--bounces", type=int, default=4, help="diffuse bounces of the reference; 4")
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's; 16")
-    parser.add_argument("--presets", default=PRESETS, help=f"Afterlight's; {PRESETS}")
+    parser.add_argument("--ways", default=WAYS, help=f"to render, of {','.join(ways)}; without: {WAYS}")
     parser.add_argument("--rounds", type=int, default=3, help="timed frames of each; 3, of slow ones 1")
     parser.add_argument("--first-samples", type=int, default=64, help="of a reference, to begin with; 64")
     parser.add_argument("--most-samples", type=int, default=4096, help="of a reference, at most; 4096")
@@ -153,10 +154,9 @@ def parse(arguments):
             "--bounces, --samples and --rounds are at least 1, --first-samples 2, each side of --size 8 pixels"
         )
     options.command = shlex.join([".venv/bin/python", "-m", "benchmarks.accuracy", *arguments])
-    options.presets = [name for name in options.presets.split(",") if name]
-    known = sorted(path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py"))
-    if unknown := [name for name in options.presets if name not in known]:
-        parser.error(f"there is no preset {unknown[0]}; there are {', '.join(known)}")
+    options.ways = options.ways.split(",")
+    if unknown := [name for name in options.ways if name not in ways]:
+        parser.error(f"there is no way {unknown[0]}; there are {', '.join(ways)}")
     if options.scenes and not (below := sorted(options.scenes.rglob("*.blend"))):
         parser.error(f"there is no .blend file in {options.scenes}")
     chosen = [*options.blends, *(below if options.scenes else ())]

@@ -48,6 +48,7 @@ DENOISER = {
 }
 SEED = 1 << 20  # of these: none that a reference uses
 SLOW = 40  # seconds, over which a frame is timed once
+COMPILED = 10  # seconds, of which compilation is a small part
 
 
 def diffuse_samples():
@@ -161,16 +162,31 @@ def nodes_of_one_engine():
     return sorted(found)
 
 
-def all_of(afterlight, bounces, presets=()):
-    """The candidates, plain EEVEE first. presets: names of those to take; all that there are without."""
-    named = sorted(path.stem for path in afterlight.addon.ui.operators.PRESETS.glob("*.py"))
-    return [
-        Candidate("EEVEE", "EEVEE", nullcontext, lambda scene, final, plain: plain.world),
-        Candidate("EEVEE ray tracing, default", "EEVEE ray tracing", lambda scene: traced(scene, {}), traced_diffuse),
-        Candidate("EEVEE ray tracing, best", "EEVEE ray tracing", lambda scene: traced(scene, BEST), traced_diffuse),
-        *(ticked(afterlight, name) for name in presets or named),
-        *(denoised(bounces, samples) for samples in CYCLES_SAMPLES),
-    ]
+def names_of_ways():
+    """Names of all ways to render: EEVEE's, Afterlight's presets, Cycles with few samples and its denoiser."""
+    presets = sorted(path.stem for path in (SAMPLES.parent / "addon" / "presets" / "afterlight").glob("*.py"))
+    return ["eevee", "tracing", "tracing-best", *presets, *(f"cycles-{samples}" for samples in CYCLES_SAMPLES)]
+
+
+def ways_of(names, afterlight, bounces):
+    """[Candidate], plain EEVEE first, whether it is named or not: the others' costs are ratios to its."""
+
+    def way(name):
+        kind, _, samples = name.partition("-")
+        if kind == "cycles":
+            return denoised(bounces, int(samples))
+        return known.get(name) or ticked(afterlight, name)
+
+    known = {
+        "eevee": Candidate("EEVEE", "EEVEE", nullcontext, lambda scene, final, plain: plain.world),
+        "tracing": Candidate(
+            "EEVEE ray tracing, default", "EEVEE ray tracing", lambda scene: traced(scene, {}), traced_diffuse
+        ),
+        "tracing-best": Candidate(
+            "EEVEE ray tracing, best", "EEVEE ray tracing", lambda scene: traced(scene, BEST), traced_diffuse
+        ),
+    }
+    return [way(name) for name in dict.fromkeys(["eevee", *names])]
 
 
 @contextmanager
@@ -300,7 +316,7 @@ def compile_shaders(scene, candidates):
             with candidate.mode(scene):
                 start = time.perf_counter()
                 bpy.ops.render.render(scene=scene.name)
-                if time.perf_counter() - start > SLOW:
+                if time.perf_counter() - start > COMPILED:
                     return
     finally:
         scene.eevee.taa_render_samples = samples

@@ -15,7 +15,7 @@ LEAST_SHARE = 0.001  # of the frame, for a table of what is not diffuse
 def measure(path, options, afterlight):
     """One scene's entry of accuracy.json; its contact sheet goes to options.out. Raises candidates.Unmeasurable."""
     scene = candidates.open_scene(path, options.size, options.samples, afterlight)
-    shown = candidates.all_of(afterlight, options.bounces, options.presets)
+    shown = candidates.ways_of(options.ways, afterlight, options.bounces)
     plain = candidates.render_all(scene, shown, options.rounds, afterlight)
     start = time.perf_counter()
     truth = references.Truth(scene, options.bounces, references.source_key(path), shorter=options.causes)

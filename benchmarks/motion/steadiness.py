@@ -55,11 +55,8 @@ def dolly(camera, depth, frames, travel):
 def ways_of(afterlight):
     """[(candidate, whether its views are placed anew in every frame)]: the last is as on a farm, of a file without
     views."""
-    ways = [
-        (each, False)
-        for each in candidates.all_of(afterlight, BOUNCES, ["draft", "production"])
-        if not each.group.startswith("Cycles")
-    ]
+    names = ("eevee", "tracing", "tracing-best", "draft", "production")
+    ways = [(each, False) for each in candidates.ways_of(names, afterlight, BOUNCES)]
     anew = candidates.ticked(afterlight, "production")
     anew.name += ", views placed anew"
     return [*ways, (anew, True)]
