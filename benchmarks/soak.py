@@ -302,7 +302,7 @@ def page(ticked, unticked, command):
         [
             "# Does anything stay behind?",
             "",
-            f"Made by `{command}` (`make soak`) at commit {figures.commit()} "
+            f"Measured at commit {figures.commit()} by `{command}` (`make soak`) "
             "on software OpenGL, where the process's memory is the GPU's as well.",
             "",
             f"{len(ticked['resident'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",

@@ -188,9 +188,9 @@ def section(found, settings, size, machine, command, commit):
                 cost_report.CONSTANT_COST,
                 f"One closed room at {size[0]}x{size[1]}, its surfaces cut into few and many polygons, lit by one "
                 "and by many "
-                "lights of the same total power, measured by",
+                f"lights of the same total power, measured at commit {commit} by",
                 f"    {command}",
-                f"on {machine}, at commit {commit}.",
+                f"on {machine}.",
                 "\n".join(f"- {sentence}" for sentence, _ in verdicts(found)),
                 f"The light: the whole of `gather_indirect()`, arrays in and an array out, at start {settings.start}, "
                 f"{settings.samples} samples, radius {settings.radius}; {len(first.seconds)} rounds in one "
