@@ -5,8 +5,9 @@
 
 Prints, by page and heading, the commit that was measured, how many commits have changed the code since, the latest of
 them, and the command of the page that measures again. A commit that only renames or reformats counts too: what it
-changed is for a reader to judge; those from before a file had its present path do not. Exit code 1 if numbers are stale or a table names no commit; else 0, also where a
-commit is not in the history, as in a shallow clone: that is said.
+changed is for a reader to judge. Those to a file under a former path do not count, but the one that moved it does. Exit
+code 1 if numbers are stale or a table names no commit; else 0, also where a commit is not in the history, as in a
+shallow clone: that is said.
 
 The wording, NOTE below: "measured at commit 1a2b3c4", "measured at or before commit 1a2b3c4" where only the commit
 that brought the numbers is known, "measured before commit 1a2b3c4" for numbers of former code, kept for what they
