@@ -19,7 +19,7 @@ from statistics import median
 
 import session
 
-from .. import ROOT, figures
+from .. import ROOT, commit
 from . import accuracy_report, candidates, metrics, references, visible
 
 KINDS = "indirect", "final"
@@ -232,7 +232,7 @@ def measure_all(options):
     return {
         "machine": machine,
         "command": options.command,
-        "commit": figures.commit(),
+        "commit": commit.current(),
         "size": options.size,
         "bounces": options.bounces,
         "samples": options.samples,

@@ -21,7 +21,7 @@ import numpy as np
 
 import session
 
-from .. import figures
+from .. import commit
 from . import bench, cost_report
 
 POLYGONS = 1_000, 3_000_000
@@ -228,7 +228,7 @@ def main():
     settings = light.PaperSettings(start=4, samples=64, radius=16, seed=0, strength=1.0)
     measure(light, found, settings, options.rounds)
     command = shlex.join([".venv/bin/python", "-m", "benchmarks.cost.constant_cost", *session.arguments()])
-    text = section(found, settings, options.size, bench.machine(), command, figures.commit())
+    text = section(found, settings, options.size, bench.machine(), command, commit.current())
     cost_report.write(options.output, constant_cost=text)
     print(text)
     return int(not all(kept for _, kept in verdicts(found)))
