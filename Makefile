@@ -49,6 +49,9 @@ motion: package  ## error, flicker, lag and trails in moving shots; make motion 
 soak: package    ## 300 frames in one process: does memory grow, does anything stay behind? Half an hour; needs Linux
 	$(python) -m benchmarks.soak
 
+stale:           ## pages with measured numbers that are older than the code they depend on
+	@$(python) tools/stale.py
+
 fuzz: setup      ## what people do to files in any order, and files that claim anything: an hour; make fuzz FUZZ='--minutes 5'
 	cd tests && PYTHONPATH=.:../tools ../$(python) -m fuzz hour $(FUZZ)
 
@@ -56,4 +59,4 @@ clean:           ## remove what was made, but for .venv and the downloaded wheel
 	rm -rf dist build .pytest_cache .hypothesis .ruff_cache .mypy_cache
 	find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-.PHONY: help setup test lint desktop-test package demo clip pictures samples bench speed accuracy motion soak fuzz clean
+.PHONY: help setup test lint desktop-test package demo clip pictures samples bench speed accuracy motion soak stale fuzz clean

@@ -21,7 +21,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from . import figures
+from . import commit
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "measured" / "soak.md"
@@ -302,7 +302,7 @@ def page(ticked, unticked, command):
         [
             "# Does anything stay behind?",
             "",
-            f"Made by `{command}` (`make soak`) at commit {figures.commit()} "
+            f"Measured at commit {commit.current()} by `{command}` (`make soak`) "
             "on software OpenGL, where the process's memory is the GPU's as well.",
             "",
             f"{len(ticked['resident'])} frames in one process: {len(MIX)} different ones over and over (`MIX` in",

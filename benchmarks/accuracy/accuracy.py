@@ -18,7 +18,7 @@ from pathlib import Path
 
 import session
 
-from .. import ROOT, figures
+from .. import ROOT, commit
 from . import accuracy_report, candidates, measuring, references
 
 WAYS = "eevee,tracing-best,production,cycles-1,cycles-4,cycles-16"
@@ -72,7 +72,7 @@ def measure_all(options):
     return {
         "machine": machine,
         "command": options.command,
-        "commit": figures.commit(),
+        "commit": commit.current(),
         "size": options.size,
         "bounces": options.bounces,
         "samples": options.samples,

@@ -307,7 +307,8 @@ def study_parts(study):
         f"What *best* above means: the settings with the least mean relative L1 "
         f"of the indirect light, at {study['size'][0]} x {study['size'][1]} and {study['samples']} samples (its "
         "light grows with "
-        "the samples, so its errors here are above those of the tables), found by",
+        "the samples, so its errors here are above those of the tables), measured at commit "
+        f"{study.get('commit', 'unknown')} by",
         f"    {study['command']}",
         "Settings whose numbers equal the default's do not touch diffuse surfaces.",
         grid(["settings (others at their defaults)", *study["scenes"], "mean", "cost"], rows),

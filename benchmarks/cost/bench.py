@@ -17,7 +17,7 @@ from pathlib import Path
 
 import session
 
-from .. import ROOT, figures
+from .. import ROOT, commit
 from . import cost_report
 
 PAGE = ROOT / "docs" / "measured" / "bench.md"
@@ -180,7 +180,7 @@ def measure(path, options, names):
         title=path.name,
         size=options.size,
         machine=machine(),
-        commit=figures.commit(),
+        commit=commit.current(),
         memory=memory,
         memory_size=MEMORY_SIZE,
         presets=presets,

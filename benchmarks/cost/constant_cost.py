@@ -21,7 +21,7 @@ import numpy as np
 
 import session
 
-from .. import figures
+from .. import commit
 from . import bench, cost_report
 
 POLYGONS = 1_000, 3_000_000
@@ -188,9 +188,9 @@ def section(found, settings, size, machine, command, commit):
                 cost_report.CONSTANT_COST,
                 f"One closed room at {size[0]}x{size[1]}, its surfaces cut into few and many polygons, lit by one "
                 "and by many "
-                "lights of the same total power, measured by",
+                f"lights of the same total power, measured at commit {commit} by",
                 f"    {command}",
-                f"on {machine}, at commit {commit}.",
+                f"on {machine}.",
                 "\n".join(f"- {sentence}" for sentence, _ in verdicts(found)),
                 f"The light: the whole of `gather_indirect()`, arrays in and an array out, at start {settings.start}, "
                 f"{settings.samples} samples, radius {settings.radius}; {len(first.seconds)} rounds in one "
@@ -228,7 +228,7 @@ def main():
     settings = light.PaperSettings(start=4, samples=64, radius=16, seed=0, strength=1.0)
     measure(light, found, settings, options.rounds)
     command = shlex.join([".venv/bin/python", "-m", "benchmarks.cost.constant_cost", *session.arguments()])
-    text = section(found, settings, options.size, bench.machine(), command, figures.commit())
+    text = section(found, settings, options.size, bench.machine(), command, commit.current())
     cost_report.write(options.output, constant_cost=text)
     print(text)
     return int(not all(kept for _, kept in verdicts(found)))

@@ -140,9 +140,9 @@ def page(measured):
         "\n\n".join(
             [
                 "# Speed and memory",
-                f"`{measured.title}` at {_size(measured.size)}, measured by",
+                f"`{measured.title}` at {_size(measured.size)}, measured at commit {measured.commit} by",
                 f"    {measured.command}",
-                f"on {measured.machine}, at commit {measured.commit}.",
+                f"on {measured.machine}.",
                 "Seconds are on the clock, unless the column says otherwise: processor seconds are those of all cores "
                 "together. On a software GPU they contain the GPU's work, and a frame whose two columns do not "
                 "move together "

@@ -97,8 +97,8 @@ def part(found, plots):
         [
             f"## {machine['renderer']}",
             f"{machine['vendor']}, OpenGL {machine['version']}; processor {machine['processor']} ({machine['cores']} "
-            f"cores). GPU times are from {machine['timer']}. Measured by `{found['command']}` at commit "
-            f"{found.get('commit', 'unknown')}.",
+            f"cores). GPU times are from {machine['timer']}. Measured at commit "
+            f"{found.get('commit', 'unknown')} by `{found['command']}`.",
             *(["With `--quick`: few and small frames."] if found["quick"] else []),
             f"- {verdict(found)[0]}",
             "### A frame, pass by pass",

@@ -18,7 +18,7 @@ from functools import lru_cache
 from pathlib import Path
 from statistics import median
 
-from .. import ROOT, figures
+from .. import ROOT, commit
 from ..cost import cost_report
 from . import ceilings, fetchless, gpu_report, opengl, room
 
@@ -152,7 +152,7 @@ def main():
     )
     options = parser.parse_args()
     found = measure(opengl.start(), options.quick)
-    found["commit"] = figures.commit()
+    found["commit"] = commit.current()
     found["command"] = shlex.join(["python", "-m", "benchmarks.gpu", *sys.argv[1:]])
     folder = gpu_report.folder_of(options.out)
     folder.mkdir(parents=True, exist_ok=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import figures
+from .. import commit, figures
 from ..accuracy import metrics
 from . import motion_measures as measures
 
@@ -153,7 +153,7 @@ def page(options, rows):
         [
             "# Moving shots",
             "",
-            f"Measured at commit {figures.commit()} by",
+            f"Measured at commit {commit.current()} by",
             "",
             f"`{options.command}`",
             "",

@@ -18,7 +18,7 @@ from statistics import mean, median
 
 import session
 
-from .. import ROOT, figures
+from .. import ROOT, commit
 from ..accuracy import candidates, metrics, references
 
 BOUNCES, SAMPLES, HALF = 4, 4, 64
@@ -111,7 +111,7 @@ def main(arguments):
         json.dumps(
             {
                 "command": shlex.join([".venv/bin/python", "-m", "benchmarks.studies.eevee_study", *arguments]),
-                "commit": figures.commit(),
+                "commit": commit.current(),
                 "size": options.size,
                 "samples": SAMPLES,
                 "scenes": list(found),
