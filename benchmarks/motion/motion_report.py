@@ -229,8 +229,8 @@ def page(options, rows):
             "noise comes to by itself, which is in all the others. Flicker: as above, of the displayed picture's "
             "error, over the screen's white; the surfaces' inner pixels alone, and the reference's noise taken off. "
             "Seconds a frame: the whole job on the clock over its frames, with all that a job does once, as "
-            "compiling shaders, most of which the first EEVEE job of a run pays for. They are this machine's, for pictures "
-            "of this size: Cycles' grow with the pixels, while Afterlight renders its views whatever the size.",
+            "compiling shaders, most of which the first EEVEE job of a run pays for. They are this "
+            "machine's, for pictures of this size; not all ways grow alike with the pixels.",
             "",
             PICTURE_HEAD,
             *pictures,
