@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How true and how calm bounced light is in moving shots: error, flicker, lag and trails beside EEVEE's and against
-Cycles.
+"""How true and how calm bounced light is in moving shots: error, flicker, lag and trails beside EEVEE's and those of
+Cycles with few samples and its denoiser, and against Cycles with many.
 
-    .venv/bin/python -m benchmarks.motion [SHOT or FILE.blend ...] [--ways eevee,production,production+history]
+    .venv/bin/python -m benchmarks.motion [SHOT or FILE.blend ...] [--ways eevee,production,production+history,cycles-4]
     [--frames 1-24]
         [--page FILE.md] [--sheet FILE.webp] [--sheet-frame 13] [--farm]
 
 Each way renders all frames in one job, `bpy.ops.render.render(animation=True)`, to files, as a user does: what
 Afterlight keeps from frame to frame lives no longer. The truth is Cycles with four diffuse bounces, frame by frame, in
 two independent halves, kept in build/references. EEVEE's direct light is the same to the last bit in all of
-Afterlight's ways and in plain EEVEE, so shadows that move take no part: what differs is the bounce. Exit code 1 where
-a way could not be rendered."""
+Afterlight's ways and in plain EEVEE, so shadows that move take no part: what differs is the bounce. A denoiser works on
+the whole picture, so Cycles with few samples has no indirect light by itself, and its whole error counts as the
+light's. The whole pictures of all ways are compared besides, as the screen shows them. Exit code 1 where a way could
+not be rendered."""
 
 import argparse
 import shlex
@@ -29,22 +31,25 @@ from make_samples import MOVING as SHOTS
 
 from .. import ROOT
 from ..accuracy import accuracy, candidates, references
-from . import motion_measures, motion_report
+from . import motion_measures, motion_pictures, motion_report
 
 FOLDER = ROOT / "sample_blends" / "moving"
-ALONE = "eevee", "tracing", "tracing-best"  # ways of EEVEE's
-WAYS = *ALONE, "production", "production+history"
+RIVALS = {f"cycles-{samples}": samples for samples in candidates.CYCLES_SAMPLES}
+ALONE = "eevee", "tracing", "tracing-best", *RIVALS  # the ways without Afterlight
+WAYS = "eevee", "tracing-best", "production", "production+history", *RIVALS  # those that are measured unless told
 BOUNCES = 4
 
 
 @dataclass
 class Way:
     """One way to render a shot. mode(scene): a context. traced: its bounce lies in Diffuse Direct, where EEVEE puts
-    its own; otherwise in the picture. without: the name of the same way without history."""
+    its own; otherwise in the picture. whole: the error of its whole picture is its light's. without: the name of the
+    same way without history."""
 
     name: str
     mode: callable
     traced: bool = False
+    whole: bool = False
     without: str = ""
 
 
@@ -54,8 +59,23 @@ def ways_of(names, afterlight, accumulate=None):
         "eevee": Way("EEVEE", lambda scene: nullcontext()),
         "tracing": Way("EEVEE ray tracing, default", lambda scene: candidates.traced(scene, {}), True),
         "tracing-best": Way("EEVEE ray tracing, best", lambda scene: candidates.traced(scene, candidates.BEST), True),
+        **{name: rival(samples) for name, samples in RIVALS.items()},
     }
     return [known.get(name) or lit(afterlight, name, accumulate) for name in names]
+
+
+def rival(samples):
+    """Cycles with few samples and Blender's denoiser, another noise in every frame, as animators set it: noise that
+    stays on the screen while the scene moves looks like dirt on the lens."""
+    denoised = candidates.denoised(BOUNCES, samples)
+
+    @contextmanager
+    def mode(scene):
+        with denoised.mode(scene):
+            scene.cycles.use_animated_seed = True  # put back by references.as_cycles(), which switches it off
+            yield
+
+    return Way(denoised.name, mode, whole=True)
 
 
 def lit(afterlight, name, accumulate=None):
@@ -136,20 +156,26 @@ def surface(frame):
     return motion_measures.Surface(frame["Vector"], frame["Depth"][..., 0], frame["Diffuse Color"], frame["Normal"])
 
 
+def picture(frame):
+    return frame["Combined"][..., :3]
+
+
 def diffuse(frame):
     return frame["Diffuse Direct"] * frame["Diffuse Color"]
 
 
 def truth(scene, path, samples):
-    """(2, frames, H, W, 3) float32: the indirect light by Cycles in two halves, `samples` or more each."""
-    source, found = references.source_key(path), []
+    """Two arrays (2, frames, H, W, 3) float32 by Cycles in two halves, `samples` or more each: the indirect light, and
+    the whole picture."""
+    source, light, pictures = references.source_key(path), [], []
     for frame in range(scene.frame_start, scene.frame_end + 1):
         scene.frame_set(frame)
         one = references.Truth(scene, BOUNCES, source)
         one.extend(BOUNCES, samples)
-        found.append([one.indirect(BOUNCES, half) for half in range(2)])
+        light.append([one.indirect(BOUNCES, half) for half in range(2)])
+        pictures.append([one.final(BOUNCES, half) for half in range(2)])
         print(f"  Cycles, frame {frame}", file=sys.stderr, flush=True)
-    return np.array(found, np.float32).swapaxes(0, 1)
+    return (np.array(found, np.float32).swapaxes(0, 1) for found in (light, pictures))
 
 
 def measure(path, options, afterlight):
@@ -160,35 +186,49 @@ def measure(path, options, afterlight):
     scene.view_layers[0].use_pass_vector = True
     seconds, plain = job(scene, layers=True)
     scene.view_layers[0].use_pass_vector = False
-    halves = truth(scene, path, options.truth_samples)
+    light, pictures = truth(scene, path, options.truth_samples)
     surfaces = [surface(frame) for frame in plain]
     shot = motion_report.Shot(
         path.stem,
         scene.frame_start,
-        (halves[0] + halves[1]) / 2,
-        (halves[0] - halves[1]) / 2,
+        light,
+        pictures,
         [motion_measures.track(*pair) for pair in zip(surfaces, surfaces[1:])],
+        motion_pictures.Pictures(
+            motion_pictures.displayed(scene, pictures.mean(0)), motion_pictures.displayed(scene, pictures)
+        ),
     )
     for way in ways_of(options.ways, afterlight, options.accumulate):
         print(f"  {way.name}", file=sys.stderr, flush=True)
+        if way.name != "EEVEE":
+            scene = opened(path, options, afterlight)
         try:
-            light, spent = rendered(path, way, plain, seconds, options, afterlight)
+            spent, frames = (seconds, plain) if way.name == "EEVEE" else rendered(scene, way)
         except candidates.Unmeasurable as reason:
             shot.failures[way.name] = str(reason)
             continue
-        shot.add(way.name, light, spent, way.without)
+        whole = np.array([picture(frame) for frame in frames])
+        shot.add(way.name, None if way.whole else added(way, frames, plain), whole, spent, way.without)
+        shot.pictures.add(way.name, motion_pictures.displayed(scene, whole))
+    reachable = np.array([picture(frame) for frame in plain]) + light  # EEVEE's own has no indirect light
+    shot.pictures.add(
+        motion_report.REACHABLE,
+        motion_pictures.displayed(scene, reachable.mean(0)),
+        motion_pictures.displayed(scene, reachable),
+    )
     return shot
 
 
-def rendered(path, way, plain, seconds, options, afterlight):
-    """((frames, H, W, 3) indirect light, seconds of the job) of a way, in a file opened afresh."""
-    if way.name == "EEVEE":
-        return np.zeros((len(plain), *plain[0]["Combined"].shape), np.float32), seconds
-    scene = opened(path, options, afterlight)
+def rendered(scene, way):
+    """(seconds of the job, its frames) of a way."""
     with way.mode(scene):
-        spent, frames = job(scene, layers=way.traced)
-    look = diffuse if way.traced else lambda frame: frame["Combined"]
-    return np.array([look(frame) - look(without) for frame, without in zip(frames, plain, strict=True)]), spent
+        return job(scene, layers=way.traced)
+
+
+def added(way, frames, plain):
+    """(frames, H, W, 3): the indirect light of a way of EEVEE's or Afterlight's, which EEVEE alone has not."""
+    look = diffuse if way.traced else picture
+    return np.array([look(frame) - look(without) for frame, without in zip(frames, plain, strict=True)])
 
 
 def parse(arguments):
@@ -196,7 +236,9 @@ def parse(arguments):
         prog="benchmarks.motion", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("shots", nargs="*", metavar="SHOT", help=f"of {', '.join(SHOTS)}, or files; those four without")
-    parser.add_argument("--ways", default=",".join(WAYS), help=f"{','.join(WAYS)}; any PRESET or PRESET+history")
+    parser.add_argument(
+        "--ways", default=",".join(WAYS), help=f"{','.join(WAYS)}; tracing; any PRESET or PRESET+history"
+    )
     parser.add_argument("--frames", type=frame_range, metavar="FIRST-LAST", help="the scene's without")
     parser.add_argument("--size", type=accuracy.picture_size, default=(160, 90), metavar="WxH", help="160x90")
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's; 16")
@@ -217,7 +259,7 @@ def parse(arguments):
     ]
     options.ways = options.ways.split(",")
     presets = {path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py")}
-    known = {*WAYS, *presets, *(f"{name}+history" for name in presets)}
+    known = {*ALONE, *presets, *(f"{name}+history" for name in presets)}
     if unknown := [name for name in options.ways if name not in known]:
         parser.error(f"there is no way {unknown[0]}; there are {', '.join(sorted(known))}")
     return options
@@ -238,7 +280,7 @@ def main(arguments, farm):
             failed = True
             continue
         failed |= bool(found.failures)
-        rows += found.rows()
+        rows.append(found.rows())
         text = report.page(options, rows)
         print(text, flush=True)
         if options.page:  # after each shot: an hour's work must not hang on the last

@@ -85,7 +85,7 @@ def difference(one, other):
 
 
 def page(options, rows):
-    """The page in Markdown."""
+    """The page in Markdown. rows: [Parts.rows()]."""
     width, height = options.size
     return "\n".join(
         [
@@ -96,7 +96,7 @@ def page(options, rows):
             "of the whole job: root mean square difference, over that of two seeds without history in the same frame.",
             "",
             HEAD,
-            *rows,
+            *(row for shot in rows for row in shot),
             "",
         ]
     )

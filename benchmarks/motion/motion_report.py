@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `python -m benchmarks.motion` says of a shot: its rows of the page, and a contact sheet of one frame."""
+"""What `python -m benchmarks.motion` says of a shot: its rows of both tables, and a contact sheet of one frame."""
 
 from dataclasses import dataclass, field
 
@@ -8,30 +8,42 @@ import numpy as np
 from .. import commit, figures
 from ..accuracy import metrics
 from . import motion_measures as measures
+from .motion_pictures import Pictures
 
-HEAD = (
-    "| shot | way | energy | error | flicker | variance | lag | trails | seconds a frame |\n"
-    "|---|---|---:|---:|---:|---:|---:|---|---:|"
+LIGHT_HEAD = (
+    "| shot | way | energy | error | flicker | variance | lag | trails |\n|---|---|---:|---:|---:|---:|---:|---|"
 )
+PICTURE_HEAD = "| shot | way | LDR-FLIP | flicker | seconds a frame |\n|---|---|---:|---:|---:|"
+REACHABLE = "*reachable: EEVEE with Cycles' indirect light*"
 
 
 @dataclass
 class Shot:
-    """One shot. first: number of its first frame. truth, noise: (frames, H, W, 3), the mean of the reference's halves
-    and half their difference. tracks: [Track] of each frame but the first."""
+    """One shot. first: number of its first frame. halves, wholes: (2, frames, H, W, 3), the reference's indirect light
+    and its whole picture. tracks: [Track] of each frame but the first. pictures: what the screen shows."""
 
     name: str
     first: int
-    truth: np.ndarray
-    noise: np.ndarray
+    halves: np.ndarray
+    wholes: np.ndarray
     tracks: list
+    pictures: Pictures
     light: dict = field(default_factory=dict)  # by way: (frames, H, W, 3)
+    noises: dict = field(default_factory=dict)  # by way: the noise in its error
     seconds: dict = field(default_factory=dict)  # by way: of its job
     without: dict = field(default_factory=dict)  # by way: the same without history
     failures: dict = field(default_factory=dict)  # by way: why it was not rendered
 
-    def add(self, name, light, seconds, without=""):
-        self.light[name], self.seconds[name] = light, seconds
+    def __post_init__(self):
+        self.truth, self.noise = self.halves.mean(0), (self.halves[0] - self.halves[1]) / 2
+
+    def add(self, name, light, whole, seconds, without=""):
+        """One way's shot, (frames, H, W, 3) both. light: None where it has none by itself, so that the error of its
+        whole picture counts as the light's; the noise in it is that of the reference's whole picture."""
+        self.light[name], self.noises[name], self.seconds[name] = light, self.noise, seconds
+        if light is None:
+            self.light[name] = whole - self.wholes.mean(0) + self.truth
+            self.noises[name] = (self.wholes[0] - self.wholes[1]) / 2
         if without:
             self.without[name] = without
 
@@ -53,28 +65,32 @@ class Shot:
     def error(self, name):
         """Relative L1 error over all frames, without the reference's noise."""
         width = self.truth.shape[2]
+        noise = self.noises[name]
         picture, *halves = (
-            each.reshape(-1, width, 3) for each in (self.light[name], self.truth + self.noise, self.truth - self.noise)
+            each.reshape(-1, width, 3) for each in (self.light[name], self.truth + noise, self.truth - noise)
         )
         return metrics.l1_without_noise(picture, *halves, np.ones(picture.shape[:2], bool))
 
     def rows(self):
-        """Markdown, a row a way, the reference's own noise last."""
+        """(Markdown of the light, of the pictures): lists, a row a way, the reference's own noise last."""
+        failed = [f"| {self.name} | {name} | failed: {reason} |" for name, reason in self.failures.items()]
         return (
-            [self.row(name) for name in self.light]
-            + [f"| {self.name} | {name} | failed: {reason} | | | | | | |" for name, reason in self.failures.items()]
-            + [self.row_of_noise()]
+            [*map(self.row, self.light), *(each + " |" * 5 for each in failed), self.row_of_noise()],
+            [
+                *map(self.picture_row, self.pictures.shown),
+                *(each + " |" * 2 for each in failed),
+                self.picture_row_of_noise(),
+            ],
         )
 
     def row(self, name):
         light = self.light[name]
-        by_frame = measures.flicker(self.errors(name), self.noise, self.tracks)[self.steady] / self.mean**2
+        by_frame = measures.flicker(self.errors(name), self.noises[name], self.tracks)[self.steady] / self.mean**2
         variance, spread = by_frame.mean(), by_frame.std() / np.sqrt(max(len(by_frame) - 1, 1))
         return (
             f"| {self.name} | {name} | {light.mean(dtype=float) / self.mean:.3f} | {self.error(name):.3f} "
-            f"| {np.sqrt(max(variance, 0)):.4f} | {variance:.6f} ± {spread:.6f} | {self.lag(name)} | "
-            f"{self.trails(name)} "
-            f"| {self.seconds[name] / len(light):.1f} |"
+            f"| {np.sqrt(max(variance, 0)):.4f} | {variance:.6f} ± {spread:.6f} | {self.lag(name)} "
+            f"| {self.trails(name)} |"
         )
 
     def row_of_noise(self):
@@ -82,7 +98,19 @@ class Shot:
         return (
             f"| {self.name} | *Cycles' own noise, taken off above* | | "
             f"{np.abs(self.noise).mean(dtype=float) / self.mean:.3f} "
-            f"| {np.sqrt(own):.4f} | {own:.6f} | | | |"
+            f"| {np.sqrt(own):.4f} | {own:.6f} | | |"
+        )
+
+    def picture_row(self, name):
+        change = max(self.pictures.flicker(name, self.tracks)[self.steady].mean(), 0)
+        seconds = f"{self.seconds[name] / len(self.truth):.1f}" if name in self.seconds else ""
+        return f"| {self.name} | {name} | {self.pictures.flip(name):.4f} | {np.sqrt(change):.5f} | {seconds} |"
+
+    def picture_row_of_noise(self):
+        own = self.pictures.own_flicker(self.tracks)[self.steady].mean()
+        return (
+            f"| {self.name} | *Cycles' own noise, taken off the flicker above* | {self.pictures.own_flip():.4f} "
+            f"| {np.sqrt(own):.5f} | |"
         )
 
     def lag(self, name):
@@ -107,8 +135,8 @@ class Shot:
         return f"{more / self.mean:.3f} (frame {self.first + frame}, row {row}, column {column})"
 
     def sheet(self, path, number=None):
-        """WebP: for one frame the light by each way, its error, and the error's change from the frame before where that
-        shows the same surface."""
+        """WebP: for one frame the whole picture by each way, its light, the light's error, and the error's change from
+        the frame before where that shows the same surface."""
         import matplotlib
 
         matplotlib.use("Agg")
@@ -117,21 +145,24 @@ class Shot:
         after = (measures.switch(self.truth) or len(self.truth) // 2 - 1) + 1
         frame = after if number is None else number - self.first
         frame = min(max(frame, 1), len(self.truth) - 1)  # the first has none before it
-        names, track = list(self.light), self.tracks[frame - 1]
+        titles, track = ["Cycles", *self.light], self.tracks[frame - 1]
         figure, axes = pyplot.subplots(
-            3, len(names) + 1, figsize=(2.9 * (len(names) + 1), 5.4), layout="constrained", squeeze=False
+            4, len(titles), figsize=(2.9 * len(titles), 7.1), layout="constrained", squeeze=False
         )
         white = np.percentile(self.truth[frame], 99)
-        titles = ["Cycles", *names]
         for column, name in enumerate(titles):
-            light = self.truth if name == "Cycles" else self.light[name]
-            axes[0, column].imshow((light[frame] / white).clip(0, 1) ** (1 / 2.2))
+            cycles = name == "Cycles"
+            whole = self.pictures.truth if cycles else self.pictures.shown[name]
+            light = self.truth if cycles else self.light[name]
+            axes[0, column].imshow(whole[frame].clip(0, 1))
             axes[0, column].set_title(name, fontsize=8)
-            errors, kind = (self.noise, "its own noise") if name == "Cycles" else (self.errors(name), "error")
+            axes[1, column].imshow((light[frame] / white).clip(0, 1) ** (1 / 2.2))
+            axes[1, column].set_title("indirect light", fontsize=7)
+            errors, kind = (self.noise, "its own noise") if cycles else (self.errors(name), "error")
             change = np.full(self.truth.shape[1:3], np.nan)
             change[track.now] = (errors[frame][track.now] - errors[frame - 1][track.then]).mean(-1)
             pictures = (kind, errors[frame].mean(-1), 0.5), (f"{kind}: change from the frame before", change, 0.2)
-            for row, (title, picture, reach) in enumerate(pictures, 1):
+            for row, (title, picture, reach) in enumerate(pictures, 2):
                 shown = axes[row, column].imshow(picture / self.mean, cmap="RdBu_r", vmin=-reach, vmax=reach)
                 axes[row, column].set_title(title, fontsize=7)
                 if column == len(titles) - 1:
@@ -147,8 +178,9 @@ class Shot:
 
 
 def page(options, rows):
-    """The page in Markdown: the command, and what its columns say."""
+    """The page in Markdown: the command, both tables, and what their columns say. rows: [Shot.rows()]."""
     width, height = options.size
+    light, pictures = ([row for shot in rows for row in shot[table]] for table in range(2))
     return "\n".join(
         [
             "# Moving shots",
@@ -159,6 +191,13 @@ def page(options, rows):
             "",
             f"{width} x {height}, EEVEE with {options.samples} samples, Cycles with {2 * options.truth_samples} "
             "and four diffuse bounces. "
+            "The rivals, *Cycles, ... denoised*, have those bounces too, Blender's denoiser as it comes "
+            "(OpenImageDenoise with albedo and "
+            "normal) and other noise in each frame; as in the reference, nothing is clamped and all pixels get all "
+            "samples.",
+            "",
+            "## The indirect light",
+            "",
             "All is over the mean indirect light of the shot. Energy: the mean light. Error: relative L1, the "
             "reference's noise taken off. "
             "Flicker: root mean square change of the error between frames, along the true motion, where both "
@@ -171,8 +210,30 @@ def page(options, rows):
             "of the change has arrived. "
             "Trails: where history worsens the mean error of 8 x 8 pixels most.",
             "",
-            HEAD,
-            *rows,
+            "A denoiser works on the whole picture, so the rivals have no indirect light by itself: their picture's "
+            "whole error counts here as the "
+            "light's, direct light, reflections and edges included, and the noise that is taken off is that of the "
+            "reference's whole picture. Of EEVEE's and Afterlight's ways only the error of the light counts. "
+            "What else parts EEVEE from Cycles, the softness of shadows above all, is left out for them, so this "
+            "table favours them over the rivals.",
+            "",
+            LIGHT_HEAD,
+            *light,
+            "",
+            "## The picture on the screen",
+            "",
+            "The whole picture through the scene's view transform against Cycles', on equal terms: all errors of all "
+            "ways count. EEVEE's direct light differs from Cycles', and no indirect light puts that right: the row "
+            "*reachable*, EEVEE's picture with Cycles' indirect light, shows what of LDR-FLIP and flicker Afterlight "
+            "cannot take away. LDR-FLIP: mean over all pixels and frames; the last row has what the reference's "
+            "noise comes to by itself, which is in all the others. Flicker: as above, of the displayed picture's "
+            "error, over the screen's white; the surfaces' inner pixels alone, and the reference's noise taken off. "
+            "Seconds a frame: the whole job on the clock over its frames, with all that a job does once, as "
+            "compiling shaders, most of which the first EEVEE job of a run pays for. They are this "
+            "machine's, for pictures of this size; not all ways grow alike with the pixels.",
+            "",
+            PICTURE_HEAD,
+            *pictures,
             "",
         ]
     )

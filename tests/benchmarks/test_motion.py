@@ -5,7 +5,7 @@ counted."""
 import numpy as np
 import pytest
 
-from benchmarks.motion import motion, motion_report
+from benchmarks.motion import motion, motion_pictures, motion_report
 from benchmarks.motion import motion_measures as measures
 
 SIZE = 40, 64
@@ -111,29 +111,31 @@ def test_rows():
     truth = np.where(np.arange(8) < 2, 4.0, 1.0)[:, None, None, None] * np.ones((8, *SIZE, 3))
     halves = truth + draw(scale=0.2, size=(2, *truth.shape))
     wall = surface()
-    shot = motion_report.Shot("shot", 5, halves.mean(0), (halves[0] - halves[1]) / 2, [measures.track(wall, wall)] * 7)
+    pictures = motion_pictures.Pictures(halves.mean(0) / 8, halves / 8)
+    shot = motion_report.Shot("shot", 5, halves, halves, [measures.track(wall, wall)] * 7, pictures)
     shown = 0.9 * truth + draw(scale=0.1, size=truth.shape)
     late = 0.9 * truth
     late[2] += 0.7
-    shot.add("EEVEE", np.zeros_like(truth), 8)
-    shot.add("without", shown, 16)
-    shot.add("with", late, 24, "without")
+    shot.add("EEVEE", np.zeros_like(truth), truth, 8)
+    shot.add("without", shown, truth, 16)
+    shot.add("with", late, truth, 24, "without")
     shot.failures["other"] = "no reason"
     rows = {
-        cells[1]: cells[2:] for cells in ([cell.strip() for cell in row.strip("|").split("|")] for row in shot.rows())
+        cells[1]: cells[2:]
+        for cells in ([cell.strip() for cell in row.strip("|").split("|")] for row in shot.rows()[0])
     }
     mean = 1.75
     assert (
         rows["EEVEE"][:2] == ["0.000", "1.000"] and abs(float(rows["EEVEE"][3].split()[0])) < 0.001
     )  # a switch is no flicker
-    energy, error, flicker, variance, lag, trails, seconds = rows["without"]
-    assert (energy, lag, trails, seconds) == ("0.900", "0", "–", "2.0")
+    energy, error, flicker, variance, lag, trails = rows["without"]
+    assert (energy, lag, trails) == ("0.900", "0", "–")
     variance, spread = (float(part) for part in variance.split(" ± "))
     assert 0 < spread < 0.05 * variance
     assert variance == pytest.approx(0.02 / mean**2, rel=0.1) and float(flicker) == pytest.approx(
         variance**0.5, rel=0.01
     )
-    energy, error, flicker, variance, lag, trails, seconds = rows["with"]
+    energy, error, flicker, variance, lag, trails = rows["with"]
     assert float(error) == pytest.approx((2 * 0.4 + 0.6 + 5 * 0.1) / 8 / mean, rel=0.05) and lag == "1"
     assert "(frame 7, " in trails and float(trails.split()[0]) == pytest.approx(0.5 / mean, rel=0.15)
     assert rows["other"][0] == "failed: no reason"
