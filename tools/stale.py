@@ -32,7 +32,7 @@ FIGURE = re.compile(r"(?<![\w/`.^-])[+<-]?\.?\d[\d,.]*(?:e-?\d+)?(?![\w`/])")  #
 GATHER = "addon/gather", "shaders"
 PAPER = "addon/gather", "shaders/common", "shaders/paper"
 FRAME = *GATHER, "addon/parameters.py", "addon/presets", "addon/render", "addon/scene", "addon/views"
-SCENES = ":(glob)sample_blends/*.blend"
+SCENES = ":(glob)sample_blends/**/*.blend"
 DECIDED = ()  # old beside new code, or a prototype, at that time: no later change makes it wrong
 # Page, or page#heading for a section of its own: what its numbers depend on, as git's pathspecs.
 DEPENDENCIES = {
