@@ -118,7 +118,7 @@ def picture_size(text):
 def arguments_of(options):
     """The command line of one file's process."""
     given = ["--out", str(options.out), "--size", "x".join(map(str, options.size))]
-    for name in ("bounces", "samples", "rounds", "first_samples", "most_samples"):
+    for name in ("bounces", "samples", "rounds", "first_samples", "most_samples", "reference_seconds"):
         given += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
     return given + ["--ways", ",".join(options.ways)] + ["--causes"] * options.causes
 
@@ -136,9 +136,10 @@ def parse(arguments):
     parser.add_argument("--bounces", type=int, default=4, help="diffuse bounces of the reference; 4")
     parser.add_argument("--samples", type=int, default=16, help="EEVEE's; 16")
     parser.add_argument("--ways", default=WAYS, help=f"to render, of {','.join(ways)}; without: {WAYS}")
-    parser.add_argument("--rounds", type=int, default=3, help="timed frames of each; 3, of slow ones 1")
+    parser.add_argument("--rounds", type=int, default=2, help="timed frames of each; 2, of slow ones 1")
     parser.add_argument("--first-samples", type=int, default=64, help="of a reference, to begin with; 64")
     parser.add_argument("--most-samples", type=int, default=4096, help="of a reference, at most; 4096")
+    parser.add_argument("--reference-seconds", type=float, default=200, help="of rendering a reference, at most; 200")
     parser.add_argument("--causes", action="store_true", help="also where the error of the preset Paper comes from")
     parser.add_argument("--name", help=argparse.SUPPRESS)
     parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)

@@ -41,8 +41,8 @@ def measure(path, options, afterlight):
 
 
 def converge(truth, shown, surface, options):
-    """Give the references samples until every error is clear of their noise, or until they have the most allowed.
-    Returns all candidates, Cycles' references with fewer bounces among them."""
+    """Give the references samples until every error is clear of their noise, or until they have the most allowed, or
+    twice as many would take longer than allowed. Returns all candidates, Cycles' references with fewer bounces among them."""
     for number in truth.of:
         truth.extend(number, options.first_samples // 2)
     while True:
@@ -52,7 +52,12 @@ def converge(truth, shown, surface, options):
             for kind, mask in masks_of(truth, surface).items()
             for number in too_noisy(table(truth, rendered, kind, mask, flip=False))
         }
-        more = [number for number in sorted(noisy) if 4 * truth.of[number].samples <= options.most_samples]
+        more = [
+            number
+            for number in sorted(noisy)
+            if 4 * truth.of[number].samples <= options.most_samples
+            and 2 * truth.seconds(number) <= options.reference_seconds
+        ]
         if not more:
             return rendered
         for number in more:

@@ -17,6 +17,7 @@ import json
 import os
 import sys
 import tempfile
+import time
 import zipfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -63,7 +64,7 @@ SETTINGS = {
 class Reference:
     """The mean of two halves of Cycles' samples for one number of diffuse bounces.
 
-    samples: of each half so far. halves: [{name in KEPT: (H, W, 3) float64}] * 2, empty before the first samples.
+    samples: of each half so far. seconds: of rendering them. halves: [{name in KEPT: (H, W, 3) float64}] * 2, empty before the first samples.
     """
 
     def __init__(self, scene, bounces, source, folder=CACHE, caustics=True):
@@ -71,19 +72,21 @@ class Reference:
         gloss and glass send to diffuse surfaces counts."""
         self.scene, self.bounces, self.caustics = scene, bounces, caustics
         self.path = folder / f"{key(scene, bounces, source, caustics)}.npz"
-        self.samples, self.halves = 0, [{}, {}]
+        self.samples, self.seconds, self.halves = 0, 0.0, [{}, {}]
         self._read()
 
     def extend(self, samples):
         """Let each half have at least `samples`; what it has stays in it. Kept on disk."""
         while self.samples < samples:
             more = self.samples or samples  # twice as many each time
+            start = time.perf_counter()
             for index, half in enumerate(self.halves):
                 # Halves of the same length share seeds across numbers of bounces: their difference is then less noisy.
                 fresh = render(self.scene, self.bounces, more, 2 * self.samples + index, self.caustics)
                 for name in KEPT:
                     half[name] = (half.get(name, 0) * self.samples + fresh[name] * more) / (self.samples + more)
             self.samples += more
+            self.seconds += time.perf_counter() - start
         self._write()
 
     def mean(self, name):
@@ -107,20 +110,21 @@ class Reference:
             with np.load(self.path) as stored:  # zip's own checksums notice damage
                 halves = [{name: stored[f"{name}_{index}"] for name in KEPT} for index in range(2)]
                 samples = int(stored["samples"])
+                seconds = float(stored["seconds"]) if "seconds" in stored else 0.0  # of 0.3.0: not known
             if samples < 1 or not all(np.isfinite(array).all() for half in halves for array in half.values()):
                 raise ValueError("it holds no sound picture")
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zipfile.zlib.error) as error:
             print(f"The stored reference {self.path} is damaged ({error}) and is rendered again.", file=sys.stderr)
             self.path.unlink()
             return
-        self.samples, self.halves = samples, halves
+        self.samples, self.seconds, self.halves = samples, seconds, halves
 
     def _write(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
         arrays = {f"{name}_{index}": half[name] for index, half in enumerate(self.halves) for name in KEPT}
         # Through another name, so that an interrupted run leaves no half of a file.
         with tempfile.NamedTemporaryFile(dir=self.path.parent, suffix=".part", delete=False) as part:
-            np.savez(part, samples=self.samples, **arrays)
+            np.savez(part, samples=self.samples, seconds=self.seconds, **arrays)
         os.replace(part.name, self.path)
 
 
@@ -139,6 +143,10 @@ class Truth:
         """More samples for one number of bounces, and for the light of meshes and of the world, which is part of it."""
         for number in {bounces} | self.alone:
             self.of[number].extend(samples)
+
+    def seconds(self, bounces):
+        """That what extend() extends has taken so far."""
+        return sum(self.of[number].seconds for number in {bounces} | self.alone)
 
     def bounced(self, bounces, index=None):
         """(H, W, 3) radiance that comes from surfaces, the light of meshes included; of both halves, or of one."""
