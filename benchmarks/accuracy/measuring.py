@@ -42,7 +42,8 @@ def measure(path, options, afterlight):
 
 def converge(truth, shown, surface, options):
     """Give the references samples until every error is clear of their noise, or until they have the most allowed, or
-    twice as many would take longer than allowed. Returns all candidates, Cycles' references with fewer bounces among them."""
+    twice as many would take longer than allowed. Returns all candidates, Cycles' references with fewer bounces among
+    them."""
     for number in truth.of:
         truth.extend(number, options.first_samples // 2)
     while True:

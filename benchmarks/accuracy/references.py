@@ -64,7 +64,8 @@ SETTINGS = {
 class Reference:
     """The mean of two halves of Cycles' samples for one number of diffuse bounces.
 
-    samples: of each half so far. seconds: of rendering them. halves: [{name in KEPT: (H, W, 3) float64}] * 2, empty before the first samples.
+    samples: of each half so far. seconds: of rendering them. halves: [{name in KEPT: (H, W, 3) float64}] * 2, empty
+    before the first samples.
     """
 
     def __init__(self, scene, bounces, source, folder=CACHE, caustics=True):
