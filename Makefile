@@ -34,8 +34,8 @@ pictures: package ## the README's pictures of sample scenes and its clip, again
 samples: package ## write the sample scenes again from their scripts
 	$(python) sample_blends/make_samples.py
 
-bench: package   ## what it costs: beside EEVEE, by polygons and lights, and alone on the GPU; an hour at most
-	@status=0; for part in cost cost.constant_cost gpu; do $(python) -m benchmarks.$$part || status=1; done; exit $$status
+bench: package   ## what it costs: beside EEVEE, by what the scene weighs, and alone on the GPU; two hours
+	@status=0; for part in cost cost.constant_cost cost.tick gpu; do $(python) -m benchmarks.$$part || status=1; done; exit $$status
 
 speed: setup     ## the last of these: the light alone, pass by pass, on this machine's GPU
 	$(python) -m benchmarks.gpu

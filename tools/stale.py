@@ -74,6 +74,7 @@ DEPENDENCIES = {
     "docs/measured/soak.md": ("addon", "shaders", "benchmarks/soak.py"),
     "docs/measured/speed.md": (*PAPER, "benchmarks/gpu"),
     "docs/measured/speed_study.md": DECIDED,
+    "docs/measured/tick.md": ("addon", "shaders", "benchmarks/cost"),
     "docs/method/glossy.md": (*FRAME, "benchmarks/studies/glossy_study.py"),
     "docs/method/paper.md": (*PAPER, "benchmarks/studies/method_study.py"),
     "docs/method/radiosity.md": (
