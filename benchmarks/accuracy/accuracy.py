@@ -13,6 +13,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 from pathlib import Path
 
@@ -41,36 +42,10 @@ def measure_one(options):
     options.into.write_text(json.dumps(entry | machine))
 
 
-def measure_all(options):
-    """accuracy.json's content. Each file has a process: one that brings Blender down leaves the rest alone."""
-    scenes, names = [], []
-    for path in options.blends:
-        name = path.stem if path.stem not in names else f"{path.stem}_{len(names)}"
-        names.append(name)
-        print(f"{path.name}:", flush=True)
-        with tempfile.TemporaryDirectory(prefix="afterlight-accuracy-") as folder:
-            into = Path(folder) / "entry.json"
-            command = [
-                sys.executable,
-                "-m",
-                "benchmarks.accuracy",
-                *arguments_of(options),
-                "--name",
-                name,
-                "--into",
-                str(into),
-                str(path),
-            ]
-            # Blender says a line a frame on stdout; what a person needs to know comes on stderr.
-            code = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL).returncode
-            entry = json.loads(into.read_text()) if into.exists() else {"failed": f"Blender ended with code {code}"}
-        scenes.append({"name": name, "file": path.name} | entry)
-        print(f"  {verdict(scenes[-1])}", flush=True)
-    machine = next((scene.pop("machine") for scene in scenes if "machine" in scene), None)
-    for scene in scenes:
-        scene.pop("machine", None)
-    return {
-        "machine": machine,
+def measure_all(options, path):
+    """accuracy.json's content, written to `path` after each scene, lest an interrupted run lose the others."""
+    found = {
+        "machine": None,
         "command": options.command,
         "commit": commit.current(),
         "size": options.size,
@@ -82,8 +57,34 @@ def measure_all(options):
         "cycles": references.SETTINGS,
         "clearly": measuring.CLEARLY,
         "not_diffuse": references.NOT_DIFFUSE,
-        "scenes": scenes,
+        "scenes": [],
     }
+    names = []
+    for blend in options.blends:
+        names.append(blend.stem if blend.stem not in names else f"{blend.stem}_{len(names)}")
+        print(f"{blend.name}:", flush=True)
+        start = time.perf_counter()
+        entry = measure_apart(options, blend, names[-1])
+        found["machine"] = entry.pop("machine", found["machine"])
+        scene = {"name": names[-1], "file": blend.name, "took": time.perf_counter() - start} | entry
+        found["scenes"].append(scene)
+        path.write_text(json.dumps(found, indent=1) + "\n")
+        print(f"  {verdict(scene)}, in {scene['took']:.0f} s", flush=True)
+    return found
+
+
+def measure_apart(options, blend, name):
+    """One file's entry, from a process of its own: one that brings Blender down leaves the rest alone."""
+    with tempfile.TemporaryDirectory(prefix="afterlight-accuracy-") as folder:
+        into = Path(folder) / "entry.json"
+        own = ["--name", name, "--into", str(into), str(blend)]
+        # Blender says a line a frame on stdout; what a person needs to know comes on stderr.
+        code = subprocess.run(
+            [sys.executable, "-m", "benchmarks.accuracy", *arguments_of(options), *own],
+            cwd=ROOT,
+            stdout=subprocess.DEVNULL,
+        ).returncode
+        return json.loads(into.read_text()) if into.exists() else {"failed": f"Blender ended with code {code}"}
 
 
 def verdict(scene):
@@ -139,7 +140,7 @@ def parse(arguments):
     parser.add_argument("--rounds", type=int, default=2, help="timed frames of each; 2, of slow ones 1")
     parser.add_argument("--first-samples", type=int, default=64, help="of a reference, to begin with; 64")
     parser.add_argument("--most-samples", type=int, default=4096, help="of a reference, at most; 4096")
-    parser.add_argument("--reference-seconds", type=float, default=200, help="of rendering a reference, at most; 200")
+    parser.add_argument("--reference-seconds", type=float, default=100, help="of rendering a reference, at most; 100")
     parser.add_argument("--causes", action="store_true", help="also where the error of the preset Paper comes from")
     parser.add_argument("--name", help=argparse.SUPPRESS)
     parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)
@@ -172,9 +173,8 @@ def main(arguments):
     options.out.mkdir(parents=True, exist_ok=True)
     if options.into:
         return measure_one(options)
-    found = measure_all(options)
     path = options.out / "accuracy.json"
-    path.write_text(json.dumps(found, indent=1) + "\n")
+    found = measure_all(options, path)
     accuracy_report.write(path, options.page)
     print(f"Written: {options.page} and {options.out}")
     return exit_code(found["scenes"])
