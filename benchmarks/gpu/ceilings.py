@@ -104,7 +104,7 @@ def measure(light, passes, camera, settings):
         whole, gather = frame()
         note("frame", whole)
         note("gather", gather)
-        with withoutfetches(light):
+        with without_fetches(light):
             note("arithmetic", frame()[1])
     found = {name: median(measured[1:]) for name, measured in seconds.items()}
     rates = {

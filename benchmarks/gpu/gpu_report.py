@@ -22,14 +22,14 @@ PAPER = {(4, 64): (13.9, 4.6), (4, 256): (33.6, 11.2), (2, 256): (110.6, 32.6), 
 
 INTRODUCTION = (
     "# Speed of the light alone",
-    "The methods Paper and Radiosity: the add-on's own code and shader files on a bare OpenGL context, without Blender, "
-    "on frames made by numpy (`benchmarks/gpu/room.py`). Times are medians. What a frame costs inside Blender is in "
-    "[bench.md](bench.md). The numbers of this machine, the page and the plots are written by",
+    "The methods Paper and Radiosity: the add-on's own code and shader files on a bare OpenGL context, without "
+    "Blender, on frames made by numpy (`benchmarks/gpu/room.py`). Times are medians. What a frame costs inside "
+    "Blender is in [bench.md](bench.md). The numbers of this machine, the page and the plots are written by",
     "    .venv/bin/python -m benchmarks.gpu",
     "With `--method paper` or `--method radiosity` only the numbers of that one are measured, and the others stay. It "
-    "needs an OpenGL 4.3 driver with EGL and a Python with numpy, moderngl and matplotlib, on a machine with or without "
-    "a display. The numbers of every machine lie in `docs/measured/speed/`; a file put there from another machine gets "
-    "its part of this page by `python -m benchmarks.gpu.gpu_report`.",
+    "needs an OpenGL 4.3 driver with EGL and a Python with numpy, moderngl and matplotlib, on a machine with or "
+    "without a display. The numbers of every machine lie in `docs/measured/speed/`; a file put there from another "
+    "machine gets its part of this page by `python -m benchmarks.gpu.gpu_report`.",
 )
 
 

@@ -33,8 +33,8 @@ class Rays:
 
 @dataclass(frozen=True)
 class Shares:
-    """overlaps: of each pixel of a view, the number of other views in whose frame it lies; a mean. base, blocks: Rays of
-    the main view's pixels, and of those of all views."""
+    """overlaps: of each pixel of a view, the number of other views in whose frame it lies; a mean. base, blocks: Rays
+    of the main view's pixels, and of those of all views."""
 
     overlaps: float
     base: Rays

@@ -47,9 +47,9 @@ def chapter(part):
     return [
         "### Radiosity",
         f"`gather_views()` on the room of `benchmarks/gpu/room.py`, seen by several cameras, at the settings of the "
-        f"presets {names}: a frame in the middle of an animation, whose light is averaged with that of the frame before. "
-        f"The world lights nothing here, since the room is closed; there is no Glossy Light and no Vector pass. Measured "
-        f"by `{part['command']}` at commit {part['commit']}.",
+        f"presets {names}: a frame in the middle of an animation, whose light is averaged with that of the frame "
+        "before. The world lights nothing here, since the room is closed; there is no Glossy Light and no Vector "
+        f"pass. Measured by `{part['command']}` at commit {part['commit']}.",
         *(["With `--quick`: few and small frames."] if part["quick"] else []),
         table(
             ("preset", "size", "start", "draws", "bounces", "further views"),
@@ -66,8 +66,8 @@ def chapter(part):
             [row for run in part["presets"] for row in _passes(run)],
             text=2,
         ),
-        "All passes, and the whole of `gather_views()` on the clock, arrays in and an array out: that adds the transfers "
-        "to and from the GPU, and the host's own work, such as the table of emitters in each bounce.",
+        "All passes, and the whole of `gather_views()` on the clock, arrays in and an array out: that adds the "
+        "transfers to and from the GPU, and the host's own work, such as the table of emitters in each bounce.",
         table(
             (
                 "preset",
@@ -83,11 +83,12 @@ def chapter(part):
         ),
         "    floor = sum over passes of max(bytes / bandwidth, fetches / fetch rate, operations / arithmetic rate)",
         "Counted is what [radiosity.md](../method/radiosity.md) asks for, however it is laid out "
-        "(`benchmarks/gpu/radiosity_work.py` says where each count comes from): numbers that are read in order are read "
-        "once, results are written once, and what is drawn at random is fetched where it is drawn. For each draw that is "
-        "the table's entry and the record of each candidate, as far as it is needed, and a step of the shadow ray in each "
-        "view that has it in frame. There is no aim for the ratio: the counted arithmetic is the least that the formulas "
-        "need, without projections of texels and loops, and the fetch rate is that of neighbours, while draws lie apart.",
+        "(`benchmarks/gpu/radiosity_work.py` says where each count comes from): numbers that are read in order are "
+        "read once, results are written once, and what is drawn at random is fetched where it is drawn. For each draw "
+        "that is the table's entry and the record of each candidate, as far as it is needed, and a step of the shadow "
+        "ray in each view that has it in frame. There is no aim for the ratio: the counted arithmetic is the least "
+        "that the formulas need, without projections of texels and loops, and the fetch rate is that of neighbours, "
+        "while draws lie apart.",
         table(
             (
                 "preset",
@@ -106,8 +107,8 @@ def chapter(part):
         "these frames:",
         table(("of each", *(run["name"] for run in part["presets"])), _shares(part["presets"])),
         "#### Growth of Radiosity",
-        f"GPU time of a whole frame at the settings of {first['name']}, but for what is named. Cases that would take too "
-        "long for a few frames are left out.",
+        f"GPU time of a whole frame at the settings of {first['name']}, but for what is named. Cases that would take "
+        "too long for a few frames are left out.",
         *_growth(part),
     ]
 

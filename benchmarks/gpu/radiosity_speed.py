@@ -166,6 +166,6 @@ class _Rooms:
 def _words(chosen):
     """A case, for people who wait."""
     return (
-        f"Radiosity {chosen['size'][0]}x{chosen['size'][1]}, {chosen['further']} further views, {chosen['draws']} draws, "
-        f"{chosen['bounces']} bounces"
+        f"Radiosity {chosen['size'][0]}x{chosen['size'][1]}, {chosen['further']} further views, {chosen['draws']} "
+        f"draws, {chosen['bounces']} bounces"
     )
