@@ -41,11 +41,11 @@ def frames(light, gather, found, patience=PATIENCE, wall=False, between=lambda: 
 
 def series(cases, patience=PATIENCE):
     """The runs of a series, cheapest first, as far as patience goes. cases: (what it is, in words; cost, in any unit;
-    function that runs it)."""
+    function that runs it; whether that only looks up what has been run)."""
     runs, slow = [], 0.0
-    for name, cost, run in cases:
-        if runs and slow * cost > patience / FEWEST:
-            say(f"left out: {name} would take {slow * cost:.0f} s a frame")
+    for name, cost, run, is_known in cases:
+        if not is_known and slow * cost > patience / FEWEST:
+            say(f"left out: {name} would take {slow * cost:.1f} s a frame")
             break
         runs.append(run())
         slow = median(runs[-1]["gpu"]) / cost

@@ -46,6 +46,7 @@ def measure(light, quick=False):
                     lambda size=size, start=start, samples=samples, radius=radius: run(
                         light, *frame(size), settings(light, start, samples, radius), patience
                     ),
+                    False,
                 )
                 for size, start, samples, radius, cost in some
             ),
