@@ -44,7 +44,7 @@ def measure(light, quick=False):
         def measured():
             if key not in known:
                 views = room_of.views(chosen["size"], chosen["further"])
-                known[key] = run(light, views, _changed(light, settings, chosen), patience)
+                known[key] = run(light, views, _changed(light, settings, chosen), patience / 2)
             return slim(known[key])
 
         # Guessed, so that cases that are far too slow are left out; their least part does not depend on draws.

@@ -135,8 +135,8 @@ def measured(light, methods, quick, command):
 
 
 def keep_others(found, before):
-    """The numbers of a machine, and of those measured before the part that has not been measured now."""
-    return {name: part for name, part in before.items() if name != "machine"} | found
+    """The numbers of a machine, and from those measured before the method that has not been measured now."""
+    return before | found
 
 
 def main():
@@ -148,13 +148,14 @@ def main():
     )
     options = parser.parse_args()
     command = shlex.join(["python", "-m", "benchmarks.gpu", *sys.argv[1:]])
-    found = measured(opengl.start(), [options.method] if options.method else METHODS, options.quick, command)
-    folder = gpu_report.folder_of(options.out)
+    light, folder = opengl.start(), gpu_report.folder_of(options.out)
+    name = re.sub(r"[^a-z0-9]+", "-", machine()["renderer"].lower()).strip("-")
+    file, before = folder / f"{name}.json", {}
+    if options.method and file.exists():
+        before = gpu_report.read(file)  # now, since it may not hold what it should
+    found = measured(light, [options.method] if options.method else METHODS, options.quick, command)
+    found = keep_others(found, before)
     folder.mkdir(parents=True, exist_ok=True)
-    name = re.sub(r"[^a-z0-9]+", "-", found["machine"]["renderer"].lower()).strip("-")
-    file = folder / f"{name}.json"
-    if file.exists():
-        found = keep_others(found, gpu_report.read(file))
     file.write_text(json.dumps(found, indent=1) + "\n")
     gpu_report.write(options.out)
     print("\n".join(gpu_report.sentences(found)))
