@@ -42,7 +42,7 @@ def _passes(figure, part):
         left = {key: before + width for (key, before), width in zip(left.items(), widths, strict=True)}
     axes.invert_yaxis()
     axes.set_xlabel("GPU time, share of the preset's frame")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
 
 
 def _growth(figure, part):

@@ -85,10 +85,10 @@ def chapter(part):
         "Counted is what [radiosity.md](../method/radiosity.md) asks for, however it is laid out "
         "(`benchmarks/gpu/radiosity_work.py` says where each count comes from): numbers that are read in order are "
         "read once, results are written once, and what is drawn at random is fetched where it is drawn. For each draw "
-        "that is the table's entry and the record of each candidate, as far as it is needed, and a step of the shadow "
-        "ray in each view that has it in frame. There is no aim for the ratio: the counted arithmetic is the least "
-        "that the formulas need, without projections of texels and loops, and the fetch rate is that of neighbours, "
-        "while draws lie apart.",
+        "that is the table's entry and the record of each candidate, as far as it is needed, and for each step of its "
+        "shadow ray the depth map of each view that has it in frame. There is no aim for the ratio, since this "
+        "floor is a loose one: the fetch rate is that of neighbours, while draws lie apart, and the arithmetic is that "
+        "of the formulas alone, without indices, unpacking, loops and branches that differ from thread to thread.",
         table(
             (
                 "preset",

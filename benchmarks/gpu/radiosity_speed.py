@@ -165,7 +165,8 @@ class _Rooms:
 
 def _words(chosen):
     """A case, for people who wait."""
+    width, height = chosen["size"]
     return (
-        f"Radiosity {chosen['size'][0]}x{chosen['size'][1]}, {chosen['further']} further views, {chosen['draws']} "
-        f"draws, bounces {chosen['bounces']}"
+        f"Radiosity {width}x{height}, further views: {chosen['further']}, draws: {chosen['draws']}, "
+        f"bounces: {chosen['bounces']}"
     )
