@@ -43,11 +43,11 @@ def ratio(run):
 def chapter(part):
     """[Markdown] without the plots."""
     first = part["presets"][0]
-    names = " and ".join(run["name"] for run in part["presets"])
+    names = " and ".join(f"the preset {run['name']}" for run in part["presets"])
     return [
         "### Radiosity",
-        f"`gather_views()` on the room of `benchmarks/gpu/room.py`, seen by several cameras, at the settings of the "
-        f"presets {names}: a frame in the middle of an animation, whose light is averaged with that of the frame "
+        f"`gather_views()` on the room of `benchmarks/gpu/room.py`, seen by several cameras, at the settings of "
+        f"{names}: a frame in the middle of an animation, whose light is averaged with that of the frame "
         "before. The world lights nothing here, since the room is closed; there is no Glossy Light and no Vector "
         f"pass. Measured by `{part['command']}` at commit {part['commit']}.",
         *(["With `--quick`: few and small frames."] if part["quick"] else []),
