@@ -81,9 +81,9 @@ def measure(light, passes, camera, settings):
     first two are the fastest of; "frame" and "gather", the seconds of all passes and of those that gather."""
     width, height = passes.size
     base = -(-width // settings.start), -(-height // settings.start)
-    probes = {("fetch_formats", format): _fetches(format, base) for format in ("RGBA32F", "RGBA32UI")}
+    probes = {("fetch_formats", format): fetches(format, base) for format in ("RGBA32F", "RGBA32UI")}
     probes |= {
-        ("copies", f"{format} {size[0]}x{size[1]}"): _copy(format, size)
+        ("copies", f"{format} {size[0]}x{size[1]}"): copy(format, size)
         for format in ("R32F", "RGBA32F")
         for size in (base, (width, height), (2048, 2048))
     }
@@ -131,10 +131,10 @@ def _all_samples(region, size, settings):
     )
 
 
-def _copy(format, size):
+def copy(format, size):
     """A copy from texture to texture: (bytes read and written, function that runs it and returns seconds)."""
     components, kind = opengl.FORMATS[format]
-    return 2 * size[0] * size[1] * components * int(kind[1]), _dispatch(
+    return 2 * size[0] * size[1] * components * int(kind[1]), probe(
         format,
         size,
         f"""void main() {{
@@ -144,11 +144,11 @@ def _copy(format, size):
     )
 
 
-def _fetches(format, size):
+def fetches(format, size):
     """Neighbouring threads read neighbouring texels, all at the same offset from their own: (fetches, function)."""
     vector = "uvec4" if format.endswith("UI") else "vec4"
     threads = [-(-extent // GROUP) * GROUP for extent in size]
-    return threads[0] * threads[1] * FETCHES, _dispatch(
+    return threads[0] * threads[1] * FETCHES, probe(
         format,
         size,
         f"""void main() {{
@@ -164,7 +164,7 @@ def _fetches(format, size):
     )
 
 
-def _dispatch(format, size, main):
+def probe(format, size, main):
     """A function that runs a shader with a thread for each texel of its textures, and returns seconds."""
     info = opengl.CreateInfo()
     info.sampler(0, "UINT_2D" if format.endswith("UI") else "FLOAT_2D", "source")

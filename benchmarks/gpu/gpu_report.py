@@ -12,10 +12,25 @@ from pathlib import Path
 from statistics import median
 
 from ..cost.cost_report import table
+from . import radiosity_plots, radiosity_report
 from .gpu_plots import PLOTS, STARTS, draw, setting
+from .page_numbers import ms, span, three
 
 AIM = 3.0  # GPU time of a frame at quarter/64 over its floor
 PAPER = {(4, 64): (13.9, 4.6), (4, 256): (33.6, 11.2), (2, 256): (110.6, 32.6), (2, 64): (34.8, 10.5)}  # ms: (a), (b)
+
+
+INTRODUCTION = (
+    "# Speed of the light alone",
+    "The methods Paper and Radiosity: the add-on's own code and shader files on a bare OpenGL context, without "
+    "Blender, on frames made by numpy (`benchmarks/gpu/room.py`). Times are medians. What a frame costs inside "
+    "Blender is in [bench.md](bench.md). The numbers of this machine, the page and the plots are written by",
+    "    .venv/bin/python -m benchmarks.gpu",
+    "With `--method paper` or `--method radiosity` only the numbers of that one are measured, and the others stay. It "
+    "needs an OpenGL 4.3 driver with EGL and a Python with numpy, moderngl and matplotlib, on a machine with or "
+    "without a display. The numbers of every machine lie in `docs/measured/speed/`; a file put there from another "
+    "machine gets its part of this page by `python -m benchmarks.gpu.gpu_report`.",
+)
 
 
 def folder_of(page):
@@ -34,10 +49,18 @@ def verdict(found):
     seconds, floor = found["rates"]["frame"], sum(stage["seconds"] for stage in found["floor"])
     ratio = seconds / floor
     return (
-        f"{'Kept' if ratio <= AIM else 'MISSED'}: a frame at {setting(_frame(found))} takes {_ms(seconds)} ms on "
-        f"the GPU, {ratio:.2f} times its floor of {_ms(floor)} ms. Aim: at most {AIM:g} times.",
+        f"{'Kept' if ratio <= AIM else 'MISSED'}: a frame at {setting(_frame(found))} takes {ms(seconds)} ms on "
+        f"the GPU, {ratio:.2f} times its floor of {ms(floor)} ms. Aim: at most {AIM:g} times.",
         ratio <= AIM,
     )
+
+
+def sentences(found):
+    """What was found of each method, in a sentence."""
+    return [
+        *([verdict(found)[0]] if "paper" in found else []),
+        *([radiosity_report.sentence(found["radiosity"])] if "radiosity" in found else []),
+    ]
 
 
 def write(page, files=()):
@@ -47,8 +70,9 @@ def write(page, files=()):
     parts = {}
     for file in files or sorted(folder.glob("*.json")):
         parts[file.stem] = found = read(file)
-        for name in PLOTS:
-            draw(name, found, folder / f"{file.stem}-{name}.webp")
+        for plots, one, has in _plots(found):
+            for name in plots if has else ():
+                one(name, found, folder / f"{file.stem}-{name}.webp")
     page.write_text(text(parts, folder.name))
 
 
@@ -56,7 +80,8 @@ def read(file):
     """The numbers of one machine. SystemExit where the file does not hold any."""
     try:
         found = json.loads(file.read_text())
-        verdict(found)
+        if not sentences(found):
+            raise LookupError("no method")
     except (OSError, ValueError, LookupError, TypeError) as error:
         sys.exit(
             f"{file} does not hold the numbers of a machine ({type(error).__name__}: {error}). Write it again by "
@@ -67,27 +92,7 @@ def read(file):
 
 def text(parts, folder):
     """The whole page. parts: {name of a file: its numbers}; folder: of the plots, as seen from the page."""
-    return (
-        "\n\n".join(
-            [
-                "# Speed of the light alone",
-                "The method Paper: the add-on's own code and shader files on a bare OpenGL context, without "
-                "Blender, on a frame "
-                "made by numpy "
-                "(`benchmarks/gpu/room.py`). Times are medians. What a frame costs inside Blender is in "
-                "[bench.md](bench.md). "
-                "The numbers of this machine, the page and the plots are written by",
-                "    .venv/bin/python -m benchmarks.gpu",
-                "It needs an OpenGL 4.3 driver with EGL and a Python with numpy, moderngl and matplotlib, on a "
-                "machine with "
-                "or without a display. The numbers of every machine lie in `docs/measured/speed/`; a file put "
-                "there from another "
-                "machine gets its part of this page by `python -m benchmarks.gpu.gpu_report`.",
-                *(part(found, f"{folder}/{name}") for name, found in parts.items()),
-            ]
-        )
-        + "\n"
-    )
+    return "\n\n".join([*INTRODUCTION, *(part(found, f"{folder}/{name}") for name, found in parts.items())]) + "\n"
 
 
 def part(found, plots):
@@ -97,22 +102,36 @@ def part(found, plots):
         [
             f"## {machine['renderer']}",
             f"{machine['vendor']}, OpenGL {machine['version']}; processor {machine['processor']} ({machine['cores']} "
-            f"cores). GPU times are from {machine['timer']}. Measured at commit "
-            f"{found.get('commit', 'unknown')} by `{found['command']}`.",
-            *(["With `--quick`: few and small frames."] if found["quick"] else []),
-            f"- {verdict(found)[0]}",
-            "### A frame, pass by pass",
-            *_passes(found),
-            _picture(plots, "passes"),
-            "### The paper's table",
-            *_paper(found),
-            "### What the machine can do, and the floor of a frame",
-            *_floor(found),
-            "### Growth",
-            *_growth(found),
-            *(_picture(plots, name) for name in PLOTS if name != "passes"),
+            f"cores). GPU times are from {machine['timer']}.",
+            "\n".join(f"- {sentence}" for sentence in sentences(found)),
+            *(_paper_chapter(found, plots) if "paper" in found else []),
+            *(_radiosity_chapter(found, plots) if "radiosity" in found else []),
         ]
     )
+
+
+def _paper_chapter(found, plots):
+    return [
+        "### Paper: a frame, pass by pass",
+        f"Measured at commit {found.get('commit', 'unknown')} by `{found['command']}`.",
+        *(["With `--quick`: few and small frames."] if found["quick"] else []),
+        *_passes(found),
+        _picture(PLOTS, plots, "passes"),
+        "### The paper's table",
+        *_paper(found),
+        "### What the machine can do, and the floor of a frame of Paper",
+        *_floor(found),
+        "### Growth of Paper",
+        *_growth(found),
+        *(_picture(PLOTS, plots, name) for name in PLOTS if name != "passes"),
+    ]
+
+
+def _radiosity_chapter(found, plots):
+    return [
+        *radiosity_report.chapter(found["radiosity"]),
+        *(_picture(radiosity_plots.PLOTS, plots, name) for name in radiosity_plots.PLOTS),
+    ]
 
 
 def _frame(found):
@@ -122,7 +141,7 @@ def _frame(found):
 
 def _passes(found):
     rows = [
-        (setting(run), name, entry["dispatches"], _ms(median(entry["seconds"])), _range(entry["seconds"]))
+        (setting(run), name, entry["dispatches"], ms(median(entry["seconds"])), span(entry["seconds"]))
         for run in found["paper"]
         for name, entry in run["passes"].items()
     ]
@@ -145,10 +164,10 @@ def _passes(found):
                 (
                     setting(run),
                     sum(entry["dispatches"] for entry in run["passes"].values()),
-                    _ms(median(run["gpu"])),
-                    _range(run["gpu"]),
-                    _ms(median(run["wall"])),
-                    _range(run["wall"]),
+                    ms(median(run["gpu"])),
+                    span(run["gpu"]),
+                    ms(median(run["wall"])),
+                    span(run["wall"]),
                 )
                 for run in found["paper"]
             ],
@@ -158,7 +177,7 @@ def _passes(found):
 
 def _paper(found):
     rows = [
-        (setting(run), *(f"{ms:.1f}" for ms in PAPER[run["start"], run["samples"]]), _ms(median(run["gpu"])))
+        (setting(run), *(f"{ms:.1f}" for ms in PAPER[run["start"], run["samples"]]), ms(median(run["gpu"])))
         for run in found["paper"]
     ]
     return [
@@ -175,9 +194,9 @@ def _floor(found):
     rates = found["rates"]
     reached, possible = samples_a_second(found)
     seconds = sum(stage["seconds"] for stage in found["floor"])
-    copies = [(name, f"{_three(rate / 1e9)} GB/s") for name, rate in rates["copies"].items()]
+    copies = [(name, f"{three(rate / 1e9)} GB/s") for name, rate in rates["copies"].items()]
     fetches = [
-        (f"{name}, neighbours at a common offset", f"{_three(rate / 1e9)} G/s")
+        (f"{name}, neighbours at a common offset", f"{three(rate / 1e9)} G/s")
         for name, rate in rates["fetch_formats"].items()
     ]
     stages = [
@@ -187,7 +206,7 @@ def _floor(found):
             f"{stage['written'] / 1e6:.2f}",
             f"{stage['fetches'] / 1e6:.2f}",
             f"{stage['samples'] / 1e6:.2f}",
-            _ms(stage["seconds"]),
+            ms(stage["seconds"]),
             stage["limit"],
         )
         for stage in found["floor"]
@@ -198,7 +217,7 @@ def _floor(found):
             [
                 *((f"copy {name}, read and written", rate) for name, rate in copies),
                 *((f"fetches {name}", rate) for name, rate in fetches),
-                ("samples by arithmetic alone", f"{_three(rates['arithmetic'] / 1e9)} G/s"),
+                ("samples by arithmetic alone", f"{three(rates['arithmetic'] / 1e9)} G/s"),
             ],
         ),
         "All measured in turn with the frames that the floor is held against, since a machine may be slower at one "
@@ -211,10 +230,10 @@ def _floor(found):
         "arithmetic only the gather's is counted.",
         table(
             ("stage", "read, MB", "written, MB", "fetches, million", "samples, million", "floor, ms", "set by"),
-            [*stages, ("**all**", "", "", "", "", _ms(seconds), "")],
+            [*stages, ("**all**", "", "", "", "", ms(seconds), "")],
         ),
-        f"The gather takes {_three(reached / 1e9)} G samples a second, {reached / possible:.2f} of the "
-        f"{_three(possible / 1e9)} G that fetches or arithmetic alone would allow.",
+        f"The gather takes {three(reached / 1e9)} G samples a second, {reached / possible:.2f} of the "
+        f"{three(possible / 1e9)} G that fetches or arithmetic alone would allow.",
     ]
 
 
@@ -236,9 +255,9 @@ def _growth(found):
         rows = [
             (
                 cell(run),
-                _ms(median(run["gpu"])),
-                _range(run["gpu"]),
-                _three(median(run["gpu"]) / (run["size"][0] * run["size"][1]) * 1e9),
+                ms(median(run["gpu"])),
+                span(run["gpu"]),
+                three(median(run["gpu"]) / (run["size"][0] * run["size"][1]) * 1e9),
             )
             for run in runs
         ]
@@ -250,21 +269,14 @@ def _size(run):
     return "x".join(map(str, run["size"]))
 
 
-def _picture(plots, name):
-    return f"![{PLOTS[name][0]}]({plots}-{name}.webp)"
+def _plots(found):
+    """(names of plots, function that draws one, whether there are numbers for them) of each method."""
+    yield PLOTS, draw, "paper" in found
+    yield radiosity_plots.PLOTS, radiosity_plots.draw, "radiosity" in found
 
 
-def _ms(seconds):
-    return _three(1000 * seconds)
-
-
-def _three(number):
-    """Three digits that count, but whole numbers whole."""
-    return f"{number:.0f}" if number >= 100 else f"{number:.3g}"
-
-
-def _range(seconds):
-    return f"{_ms(min(seconds))} to {_ms(max(seconds))}"
+def _picture(titles, plots, name):
+    return f"![{titles[name][0]}]({plots}-{name}.webp)"
 
 
 def main():

@@ -2,6 +2,7 @@
 """A frame of any size without Blender: a room with boxes and spheres under a lamp, traced exactly by numpy.
 
     passes, camera = room.frame(light, 1280, 720)        # `light` from opengl.start()
+    views = room.views(light, 1280, 720, 4)              # that frame and 4 further views
 
 What a GPU's caches live from is as in a real frame: smooth surfaces, edges between them, shadows, no noise."""
 
@@ -32,28 +33,62 @@ COLORS = np.array(WALL_COLORS + SOLID_COLORS)
 SIGN = np.array([[-0.8, 0.4], [0.8, 1.0]])  # part of the far wall that emits light: x and y, m
 SIGN_RADIANCE = 3.0, 1.8, 0.6  # W sr^-1 m^-2
 ROWS = 1 << 14  # pixels traced at a time
+# Further views: place, m, and direction. The first see the room from its corners, the others what those leave out.
+EYES = (
+    ((-2.7, 1.2, 0.2), (0.6, -0.6, -1)),
+    ((2.7, 1.3, -8.2), (-0.7, -0.6, 1)),
+    ((-2.7, 0.9, -8.2), (0.8, -0.5, 1)),
+    ((2.7, 1.3, -0.3), (-0.7, -0.5, -1)),
+    ((0.0, 1.4, -3.0), (0.1, -1, -0.4)),
+    ((-1.0, -1.3, -2.0), (0.3, 1, -0.6)),
+    ((0.3, 0.0, -5.5), (0.2, 0, 1)),
+    ((-2.6, -1.2, -3.5), (1, 0.2, -0.3)),
+    ((1.0, 0.2, -8.2), (-1, 0, 0.3)),
+)
+VIEW_FIELD = np.radians(120)  # of a further view across and up, as in addon/scene/view_cameras.py
 
 
-def frame(light, width, height):
-    """(light.Passes, light.Camera) of width x height pixels."""
-    half = np.tan(FIELD_OF_VIEW / 2)
-    scale = np.full(2, 2 * half / width)
-    camera = light.Camera(rotation=np.eye(3), scale=scale, offset=-scale * (width, height) / 2)
+def views(light, width, height, further):
+    """[light.View]: the frame, and so many further views, of as many pixels, as the add-on renders them."""
+    passes, camera = frame(light, width, height)
+    return [light.View(passes, camera), *(view(light, width, height, number) for number in range(further))]
+
+
+def view(light, width, height, number):
+    """light.View from one of EYES. Its pixels are not square, since its field of view is."""
+    place, towards = EYES[number]
+    back = -np.array(towards) / np.linalg.norm(towards)
+    right = np.cross([0, 1, 0], back)
+    right /= np.linalg.norm(right)
+    scale = 2 * np.tan(VIEW_FIELD / 2) / np.array([width, height])
+    rotation = np.stack([right, np.cross(back, right), back])
+    camera = light.Camera(rotation, scale, -scale * (width, height) / 2, position=np.array(place))
+    return light.View(*frame(light, width, height, camera))
+
+
+def frame(light, width, height, camera=None):
+    """(light.Passes, light.Camera) of width x height pixels. Without a camera: the main view's, at the origin."""
+    if camera is None:
+        scale = np.full(2, 2 * np.tan(FIELD_OF_VIEW / 2) / width)
+        camera = light.Camera(rotation=np.eye(3), scale=scale, offset=-scale * (width, height) / 2)
+    scale = camera.scale
     channels = np.empty((13, height, width), np.float32)  # in the order of light.Passes, rows top first
     step = max(1, ROWS // width)
     for first in range(0, height, step):
         rows = np.arange(first, min(first + step, height))
         x, y = np.meshgrid(np.arange(width) + 0.5, height - rows - 0.5)
         ray = np.stack([camera.offset[0] + scale[0] * x, camera.offset[1] + scale[1] * y, np.full(x.shape, -1.0)])
-        channels[:, rows] = shade(ray.reshape(3, -1)).reshape(13, *x.shape)
+        ray = camera.rotation.T @ ray.reshape(3, -1)
+        channels[:, rows] = shade(ray, camera.position[:, None]).reshape(13, *x.shape)
     depth, *others = channels
     return light.Passes(depth, *(tuple(others[k : k + 3]) for k in range(0, 12, 3))), camera
 
 
-def shade(ray):
-    """(13, n): depth, normal, albedo, direct light and emission where rays (3, n) from the camera, z = -1, end."""
-    depth, thing, normal = trace(np.zeros((3, 1)), ray)
-    place = ray * depth
+def shade(ray, origin):
+    """(13, n): depth, normal, albedo, direct light and emission where rays (3, n) from a camera at origin (3, 1) end.
+    Rays are as long as it takes for the planar depth to be 1."""
+    depth, thing, normal = trace(origin, ray)
+    place = origin + ray * depth
     to_lamp = LAMP[:, None] - place
     square = (to_lamp**2).sum(0)
     facing = np.maximum((normal * to_lamp).sum(0), 0) / np.sqrt(square)

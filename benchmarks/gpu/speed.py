@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How fast the light itself is on this machine's GPU, without Blender: passes, the paper's table, ceilings and growth.
 
-    .venv/bin/python -m benchmarks.gpu [--quick] [--out docs/measured/speed.md]
+    .venv/bin/python -m benchmarks.gpu [--quick] [--method paper|radiosity] [--out docs/measured/speed.md]
 
 Any Python with numpy, moderngl and matplotlib will do. Writes docs/measured/speed/<renderer>.json, then
-docs/measured/speed.md and its plots from all such files there. Exit code 1 where the frame takes longer than AIM times
-its floor."""
+docs/measured/speed.md and its plots from all such files there. Exit code 1 where a frame of Paper takes longer than AIM
+times its floor."""
 
 import argparse
 import json
@@ -13,15 +13,14 @@ import os
 import re
 import shlex
 import sys
-import time
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
-from statistics import median
 
 from .. import ROOT, commit
 from ..cost import cost_report
-from . import ceilings, fetchless, gpu_report, opengl, room
+from . import ceilings, fetchless, gpu_report, opengl, radiosity_speed, repeats, room
 
+METHODS = "paper", "radiosity"
 SIZE = 1280, 720
 RADIUS = 16
 PAPER = (4, 64), (4, 256), (2, 256), (2, 64)  # start and samples, in the order of the paper's table
@@ -30,31 +29,33 @@ SIZES = (640, 360), (960, 540), (1280, 720), (1920, 1080), (2560, 1440), (3840, 
 SAMPLES = 16, 32, 64, 128, 256, 512, 1024
 SAMPLES_RADIUS = 32  # its regions hold more than 1024 texels
 RADII = 4, 8, 16, 32, 64
-REPEATS = 9  # after one frame to warm up
-FEWEST = 3  # of slow frames
-PATIENCE = 20.0  # seconds: a case that needs more for FEWEST frames is left out
 
 
 def measure(light, quick=False):
-    """All numbers of one machine, as they go into its JSON file. Seconds; lists hold one number a frame."""
+    """The part of Paper in the numbers of one machine. Seconds; lists hold one number a frame."""
     sizes, counts, radii = (SIZES[:3], SAMPLES[:4], RADII[:3]) if quick else (SIZES, SAMPLES, RADII)
-    patience = PATIENCE / 4 if quick else PATIENCE
+    patience = repeats.PATIENCE / 4 if quick else repeats.PATIENCE
     frame = lru_cache(maxsize=1)(lambda size: room.frame(light, *size))
 
-    def cases(series):
-        """The runs of a series, cheapest first, as far as patience goes."""
-        runs, slow = [], 0.0
-        for size, start, samples, radius, cost in series:
-            if runs and slow * cost > patience / FEWEST:
-                say(f"left out: {_name(size, start, samples, radius)} would take {slow * cost:.0f} s a frame")
-                break
-            runs.append(run(light, *frame(size), settings(light, start, samples, radius), patience))
-            slow = median(runs[-1]["gpu"]) / cost
-        return runs
+    def cases(some):
+        return repeats.series(
+            (
+                (
+                    _name(size, start, samples, radius),
+                    cost,
+                    lambda size=size, start=start, samples=samples, radius=radius: run(
+                        light, *frame(size), settings(light, start, samples, radius), patience
+                    ),
+                    False,
+                )
+                for size, start, samples, radius, cost in some
+            ),
+            patience,
+        )
 
     paper = [run(light, *frame(SIZE), settings(light, start, samples), patience, wall=True) for start, samples in PAPER]
     chosen = settings(light, *LIGHT)
-    say("ceilings")
+    repeats.say("ceilings")
     rates = ceilings.measure(light, *frame(SIZE), chosen)
     floor = [
         {
@@ -75,8 +76,6 @@ def measure(light, quick=False):
     for name, setting in (("pixels_light", LIGHT), ("pixels_heavy", HEAVY)):
         growth[name] = cases((size, *setting, RADIUS, size[0] * size[1]) for size in sizes)
     return {
-        "machine": machine(),
-        "quick": quick,
         "gather_passes": fetchless.gather_passes(light),
         "paper": paper,
         "rates": rates,
@@ -85,7 +84,7 @@ def measure(light, quick=False):
     }
 
 
-def run(light, passes, camera, settings, patience=PATIENCE, wall=False):
+def run(light, passes, camera, settings, patience=repeats.PATIENCE, wall=False):
     """Frames of one size and setting: the GPU's seconds by pass and in all, and, where asked for, those on the clock
     for the whole of gather_indirect() from arrays to an array, in frames of their own without timers."""
     sizes = light.pyramid.level_sizes(*(-(-extent // settings.start) for extent in passes.size), settings.radius)
@@ -95,28 +94,11 @@ def run(light, passes, camera, settings, patience=PATIENCE, wall=False):
         "samples": settings.samples,
         "radius": settings.radius,
         "levels": len(sizes),
-        "gpu": [],
-        "wall": [],
-        "passes": {},
     }
-    say(_name(passes.size, settings.start, settings.samples, settings.radius))
-    first = time.perf_counter()
-    light.gather_indirect(passes, camera, settings)
-    repeats = REPEATS
-    while len(found["gpu"]) < repeats:
-        with opengl.timed(light) as dispatches:
-            light.gather_indirect(passes, camera, settings)
-        found["gpu"].append(sum(map(sum, dispatches.values())))
-        for name, seconds in dispatches.items():
-            entry = found["passes"].setdefault(name, {"dispatches": len(seconds), "seconds": []})
-            entry["seconds"].append(sum(seconds))
-        if wall:
-            start = time.perf_counter()
-            light.gather_indirect(passes, camera, settings)
-            found["wall"].append(time.perf_counter() - start)
-        elif time.perf_counter() - first > patience:
-            repeats = FEWEST
-    return found
+    repeats.say(_name(passes.size, settings.start, settings.samples, settings.radius))
+    gather = partial(light.gather_indirect, passes, camera, settings)
+    gather()  # compiles
+    return repeats.frames(light, gather, found, patience, wall)
 
 
 def settings(light, start, samples, radius=RADIUS):
@@ -136,29 +118,45 @@ def machine():
     }
 
 
-def say(text):
-    print(text, file=sys.stderr, flush=True)
-
-
 def _name(size, start, samples, radius):
     return f"{size[0]}x{size[1]}, start {start}, {samples} samples, radius {radius}"
 
 
+def measured(light, methods, quick, command):
+    """All numbers of some METHODS on one machine, as they go into its JSON file. Those of Radiosity are a part of their
+    own, with the command and the commit that they were measured by."""
+    source = {"commit": commit.current(), "command": command, "quick": quick}
+    found = {"machine": machine()}
+    if "paper" in methods:
+        found |= source | measure(light, quick)
+    if "radiosity" in methods:
+        found["radiosity"] = source | radiosity_speed.measure(light, quick)
+    return found
+
+
+def keep_others(found, before):
+    """The numbers of a machine, and from those measured before the method that has not been measured now."""
+    return before | found
+
+
 def main():
     parser = argparse.ArgumentParser(description="Afterlight's speed on this machine's GPU, without Blender.")
-    parser.add_argument("--quick", action="store_true", help="fewer and smaller frames, in a minute")
+    parser.add_argument("--quick", action="store_true", help="fewer and smaller frames, in a minute or two")
+    parser.add_argument("--method", choices=METHODS, help="only this one; the numbers of the other are kept")
     parser.add_argument(
         "--out", type=Path, default=ROOT / "docs" / "measured" / "speed.md", help="the page; docs/measured/speed.md"
     )
     options = parser.parse_args()
-    found = measure(opengl.start(), options.quick)
-    found["commit"] = commit.current()
-    found["command"] = shlex.join(["python", "-m", "benchmarks.gpu", *sys.argv[1:]])
-    folder = gpu_report.folder_of(options.out)
+    command = shlex.join(["python", "-m", "benchmarks.gpu", *sys.argv[1:]])
+    light, folder = opengl.start(), gpu_report.folder_of(options.out)
+    name = re.sub(r"[^a-z0-9]+", "-", machine()["renderer"].lower()).strip("-")
+    file, before = folder / f"{name}.json", {}
+    if options.method and file.exists():
+        before = gpu_report.read(file)  # now, since it may not hold what it should
+    found = measured(light, [options.method] if options.method else METHODS, options.quick, command)
+    found = keep_others(found, before)
     folder.mkdir(parents=True, exist_ok=True)
-    name = re.sub(r"[^a-z0-9]+", "-", found["machine"]["renderer"].lower()).strip("-")
-    (folder / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n")
+    file.write_text(json.dumps(found, indent=1) + "\n")
     gpu_report.write(options.out)
-    text, kept = gpu_report.verdict(found)
-    print(text)
-    return int(not kept)
+    print("\n".join(gpu_report.sentences(found)))
+    return int("paper" in found and options.method != "radiosity" and not gpu_report.verdict(found)[1])

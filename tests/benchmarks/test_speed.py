@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
 
 from benchmarks.cost import constant_cost, cost_report
-from benchmarks.gpu import ceilings, fetchless, gpu_report, room, speed
+from benchmarks.gpu import ceilings, fetchless, gpu_report, repeats, room, speed
 
 SIZE = 146, 83  # not a multiple of anything
 STANDALONE = f"""
@@ -55,7 +55,7 @@ def test_without_fetches_only_inside_the_block(standalone):
 def test_a_run_adds_up(standalone):
     _, run = standalone
     assert run["size"] == list(SIZE) and run["levels"] == 4  # 73 x 42, 37 x 21, 19 x 11, 10 x 6: a diagonal under 16
-    assert len(run["gpu"]) == len(run["wall"]) == speed.REPEATS
+    assert len(run["gpu"]) == len(run["wall"]) == repeats.REPEATS
     by_pass = np.array([entry["seconds"] for entry in run["passes"].values()])
     assert np.allclose(by_pass.sum(0), run["gpu"]) and (by_pass > 0).all()
 
