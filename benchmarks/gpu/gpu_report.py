@@ -112,16 +112,17 @@ def part(found, plots):
 
 def _paper_chapter(found, plots):
     return [
-        "### Paper: a frame, pass by pass",
+        "### Paper",
         f"Measured at commit {found.get('commit', 'unknown')} by `{found['command']}`.",
         *(["With `--quick`: few and small frames."] if found["quick"] else []),
+        "#### Pass by pass",
         *_passes(found),
         _picture(PLOTS, plots, "passes"),
-        "### The paper's table",
+        "#### The paper's table",
         *_paper(found),
-        "### What the machine can do, and the floor of a frame of Paper",
+        "#### What the machine can do, and the floor of a frame",
         *_floor(found),
-        "### Growth of Paper",
+        "#### Growth",
         *_growth(found),
         *(_picture(PLOTS, plots, name) for name in PLOTS if name != "passes"),
     ]

@@ -106,7 +106,7 @@ def chapter(part):
         "(`benchmarks/gpu/radiosity_rays.py`), for the last bounce; and what the machine can do, measured in turn with "
         "these frames:",
         table(("of each", *(run["name"] for run in part["presets"])), _shares(part["presets"])),
-        "#### Growth of Radiosity",
+        "#### Growth",
         f"GPU time of a whole frame at the settings of {first['name']}, but for what is named. Cases that would take "
         "too long for a few frames are left out.",
         *_growth(part),
