@@ -28,37 +28,39 @@ class Clock:
 @contextmanager
 def clock():
     """A Clock of the frames rendered within, complete once the block ends."""
-    import bpy
-
-    found = Clock()
-    evaluated = sampled = gathering = None
-
-    def close_eevee():
-        nonlocal evaluated, sampled
-        if evaluated is not None and sampled is not None:
-            found.gpu += sampled - evaluated
-        evaluated = sampled = None
+    found, drawing, gathering = Clock(), None, None  # since when the card is at work
 
     def on_evaluated(scene, depsgraph):
-        nonlocal evaluated
-        close_eevee()
-        evaluated = time.perf_counter()
+        nonlocal drawing
+        drawing = time.perf_counter()
 
     def on_message(text, *_):
-        nonlocal sampled, gathering
+        nonlocal drawing, gathering
         now = time.perf_counter()
         if gathering is not None:
             found.gpu += now - gathering
         gathering = now if GATHER.fullmatch(text) else None
-        if text.startswith(SAMPLING):
-            sampled = now
+        if text.startswith(SAMPLING) and drawing is not None:
+            found.gpu += now - drawing
+            drawing = now
 
-    hooks = (bpy.app.handlers.frame_change_post, on_evaluated), (bpy.app.handlers.render_stats, on_message)
-    for handlers, hook in hooks:
-        handlers.append(hook)
-    try:
+    with listening(frame_change_post=on_evaluated, render_stats=on_message):
         yield found
+
+
+@contextmanager
+def listening(**hooks):
+    """Blender's handlers of these names call these functions. They pass for Afterlight's own: it takes others for
+    scripts that may move anything from frame to frame, and would measure another case."""
+    import bpy
+
+    import extension
+
+    for name, hook in hooks.items():
+        hook.__module__ = f"{extension.MODULE}.addon"
+        getattr(bpy.app.handlers, name).append(hook)
+    try:
+        yield
     finally:
-        close_eevee()
-        for handlers, hook in hooks:
-            handlers.remove(hook)
+        for name, hook in hooks.items():
+            getattr(bpy.app.handlers, name).remove(hook)

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import session
@@ -24,54 +25,52 @@ PAGE = ROOT / "docs" / "measured" / "tick.md"
 SAMPLES = 9  # of EEVEE, for the cost of one more
 
 
-class Evaluations:
-    """How often a dependency graph has evaluated the geometry of a scene: its first evaluation does, and one for
-    another frame only where something changes shape."""
+@contextmanager
+def counted_evaluations():
+    """[count], which grows each time that a dependency graph evaluates the geometry of a scene: its first evaluation
+    does, and one for another frame only where something changes shape."""
+    import bpy
 
-    def __init__(self):
-        import bpy
+    count = [0]
 
-        self.count = 0
-        bpy.app.handlers.frame_change_post.append(self._evaluated)
+    def on_evaluated(scene, depsgraph):
+        count[0] += depsgraph.mode == "RENDER" and any(
+            update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
+            for update in depsgraph.updates
+        )
 
-    def _evaluated(self, scene, depsgraph):
-        import bpy
-
-        if depsgraph and any(
-            update.is_updated_geometry and isinstance(update.id, bpy.types.Object) for update in depsgraph.updates
-        ):
-            self.count += 1
+    with shares.listening(frame_change_post=on_evaluated):
+        yield count
 
 
 def measure_still(scene, afterlight):
     """{"plain", "plain, 9 samples", "anew", "kept"}: frames, see frame(). anew: views are placed in that very frame.
     kept: the frame after it, whose views are where they were."""
-    counter = Evaluations()
-    frame(scene, counter, afterlight)  # EEVEE compiles the scene's materials
+    frame(scene, afterlight)  # EEVEE compiles the scene's materials
     forget_peak()
-    found = {"plain": frame(scene, counter, afterlight)}
-    found[f"plain, {SAMPLES} samples"] = frame(scene, counter, afterlight, SAMPLES)
+    found = {"plain": frame(scene, afterlight)}
+    found[f"plain, {SAMPLES} samples"] = frame(scene, afterlight, SAMPLES)
     scene.afterlight.enabled = True
     if scene.afterlight.views == "AUTOMATIC":
         afterlight.addon.compositor.view_scenes.forget_placement(scene)
-    found["anew"] = frame(scene, counter, afterlight)
-    found["kept"] = frame(scene, counter, afterlight)
+    found["anew"] = frame(scene, afterlight)
+    found["kept"] = frame(scene, afterlight)
     return found
 
 
-def frame(scene, counter, afterlight, samples=1):
+def frame(scene, afterlight, samples=1):
     """{"seconds", "gpu", "evaluations", "peak", "stages"} of a frame as F12 renders it. peak: most memory so far, MB.
     Raises RuntimeError where it was not lit."""
     import bpy
 
     scene.eevee.taa_render_samples = samples
-    before, start = counter.count, time.perf_counter()
-    with shares.clock() as clock:
+    start = time.perf_counter()
+    with shares.clock() as clock, counted_evaluations() as count:
         bpy.ops.render.render(scene=scene.name)
     found = {
         "seconds": time.perf_counter() - start,
         "gpu": clock.gpu,
-        "evaluations": counter.count - before,
+        "evaluations": count[0],
         "peak": peak(),
     }
     if scene.afterlight.enabled:
@@ -84,17 +83,15 @@ def frame(scene, counter, afterlight, samples=1):
 def measure_animation(scene, afterlight):
     """As measure_still(), of a frame of an animation, the mean of all but the first: "plain", "plain, 9 samples" and
     "lit"."""
-    counter, found = Evaluations(), {}
-    animation(scene, counter, afterlight)
+    animation(scene, afterlight)
     forget_peak()
-    found["plain"] = animation(scene, counter, afterlight)
-    found[f"plain, {SAMPLES} samples"] = animation(scene, counter, afterlight, SAMPLES)
+    found = {"plain": animation(scene, afterlight)}
+    found[f"plain, {SAMPLES} samples"] = animation(scene, afterlight, SAMPLES)
     scene.afterlight.enabled = True
-    found["lit"] = animation(scene, counter, afterlight)
-    return found
+    return found | {"lit": animation(scene, afterlight)}
 
 
-def animation(scene, counter, afterlight, samples=1):
+def animation(scene, afterlight, samples=1):
     """What frame() gives, of a frame of the animation, in which all but the first count."""
     import bpy
 
@@ -103,16 +100,17 @@ def animation(scene, counter, afterlight, samples=1):
     ends, stages = [], []
 
     def note(*_):
-        ends.append((time.perf_counter(), clock.gpu, counter.count))
+        ends.append((time.perf_counter(), clock.gpu, count[0]))
         stages.append(dict(afterlight.addon.host.report.stages(scene)))
 
-    bpy.app.handlers.render_write.append(note)
-    try:
-        with tempfile.TemporaryDirectory(prefix="afterlight-tick-") as folder, shares.clock() as clock:
-            scene.render.filepath = str(Path(folder) / "frame_####")
-            bpy.ops.render.render(animation=True, scene=scene.name)
-    finally:
-        bpy.app.handlers.render_write.remove(note)
+    with (
+        tempfile.TemporaryDirectory(prefix="afterlight-tick-") as folder,
+        shares.clock() as clock,
+        counted_evaluations() as count,
+        shares.listening(render_write=note),
+    ):
+        scene.render.filepath = str(Path(folder) / "frame_####")
+        bpy.ops.render.render(animation=True, scene=scene.name)
     if scene.afterlight.enabled and scene.afterlight.report:
         raise RuntimeError(scene.afterlight.report)
     seconds, gpu, evaluations = (

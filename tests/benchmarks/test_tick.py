@@ -109,3 +109,18 @@ def test_a_still_is_measured(fresh):
     assert plain["seconds"] < anew["seconds"] and 0 < plain["gpu"] < plain["seconds"]
     assert "place views" in anew["stages"] and sum(anew["stages"].values()) < anew["seconds"]
     assert plain["peak"] is None or 0 < plain["peak"] <= anew["peak"]
+
+
+def test_an_animation_is_measured_and_stays_what_it_is(fresh):
+    """Where nothing moves the views are rendered once: the benchmark's own handlers must not look like scripts."""
+    scene, _ = tick_cases.build("animation", "nothing", SIZE)
+    scene.render.compositor_device = "CPU"
+    scene.afterlight.view_count, scene.frame_end = 1, 3
+    scene.eevee.taa_render_samples = 1
+    package = sys.modules[extension.MODULE]
+    tick.animation(scene, package)
+    plain = tick.animation(scene, package)
+    scene.afterlight.enabled = True
+    lit = tick.animation(scene, package)
+    assert 0 < plain["gpu"] < plain["seconds"] < lit["seconds"] and plain["evaluations"] == 0
+    assert lit["evaluations"] <= 2 and lit["stages"]["EEVEE, views"] < 0.5 * plain["seconds"]
