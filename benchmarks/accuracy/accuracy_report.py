@@ -107,12 +107,13 @@ def seen(found, folder):
         "direct light are not Afterlight's to change. Its row is the error that is EEVEE's own.\n"
         "- *Blotches*: root mean square of the relative error of the light between 4 and 32 pixels across, on diffuse "
         "surfaces. *Dots*: pixels whose error stands out from their neighbours' by a quarter of the brightness there. "
-        "The reference's own are taken off.\n"
+        "The reference's noise is taken off the first; dots are counted against the denoised reference.\n"
         "- *Cost*: seconds of a frame over plain EEVEE's beside it. Of that, *graphics card*: EEVEE's drawing and "
         "Afterlight's shaders; *host*: evaluation, files, placing of views, which take the same on any machine with "
         "such a processor. **Here the graphics card is software, on the same processor as Cycles: that flatters "
         "Cycles.** On a graphics card the first share nearly vanishes.\n"
-        f"- *{NOISE}*: LDR-FLIP that the reference's noise may have in each number.",
+        "- LDR-FLIP compares with the reference as Blender's denoiser leaves its many samples. "
+        f"*{NOISE}*: the part that what is left of its noise may have in each number.",
         f"![Error against cost]({folder}/{PLOT})",
         "LDR-FLIP against Cycles, scene by scene. Each has a page with all numbers and a contact sheet. *Caustics*: "
         "share of the indirect light on diffuse surfaces that comes by way of gloss and glass, which EEVEE has not.",
@@ -167,7 +168,8 @@ def light(found, folder):
         f"mean of squared difference over squared reference + {metrics.EPSILON}. *99.9 %*: ratio of those percentiles. "
         "*HDR-FLIP*: FLIP at all exposures.\n"
         "- The reference is two independent halves, whose difference is its noise. Errors under "
-        f'{found["clearly"]} times the noise are refused; "a, < b" is an estimate and an upper bound.',
+        f'{found["clearly"]} times the noise are refused; "a, < b" is an estimate, the noise taken off, and an upper '
+        "bound.",
         f"Means over the diffuse surfaces of {len(scenes)} scenes:",
         *picture_tables(averaged),
         "Relative L1 of the indirect light, scene by scene:",

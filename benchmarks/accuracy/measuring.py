@@ -5,7 +5,9 @@ import sys
 import time
 from statistics import median
 
-from . import accuracy_plots, candidates, metrics, references, visible
+import numpy as np
+
+from . import accuracy_plots, candidates, denoise, metrics, references, visible
 
 KINDS = "indirect", "final"
 CLEARLY = 5  # an error must be this many times the reference's own noise
@@ -24,17 +26,18 @@ def measure(path, options, afterlight):
     masks = masks_of(truth, surface)
     caustics = caustics_of(truth, masks, options)
     print(f"  Cycles' references took {time.perf_counter() - start:.0f} s", file=sys.stderr)
+    clean = Clean(truth, np.stack(plain.passes.normal, -1))
     tables = [table(truth, rendered, kind, mask) for kind, mask in masks.items()]
+    shines = np.stack(plain.passes.emission, -1).max(-1) > 0  # a lamp, and no surface that is lit
     for one, mask in zip(tables, masks.values(), strict=True):
-        add_visible(one, rendered, truth, mask)
+        add_visible(one, rendered, truth, clean, mask & ~shines)
     entry = {
         "tables": tables,
-        "whole": whole_pictures(scene, rendered, truth, masks),
+        "whole": whole_pictures(scene, rendered, clean, masks),
         "caustics": caustics,
         "samples": {str(number): 2 * each.samples for number, each in truth.of.items()},
     }
-    sheet = options.out / f"{options.name}.webp"
-    accuracy_plots.sheet(rendered, truth.indirect(truth.longest), truth.final(truth.longest), surface, sheet)
+    accuracy_plots.sheet(rendered, clean.indirect, clean.final, surface, options.out / f"{options.name}.webp")
     if options.causes:
         entry["causes"] = causes_of(afterlight, scene, plain, truth, masks["diffuse"])
     return entry
@@ -124,28 +127,45 @@ def table(truth, rendered, kind, mask, flip=True):
     return {"surface": kind, "share": float(mask.mean()), "world": float(world), "noise": noise, "rows": rows}
 
 
-def add_visible(one_table, rendered, truth, mask):
+class Clean:
+    """The longest reference as Blender's denoiser leaves it (denoise.py). final, indirect: (H, W, 3). halves: [final]
+    of each half."""
+
+    def __init__(self, truth, normal):
+        reference = truth.of[truth.longest]
+        albedo = reference.mean("albedo") + reference.mean("other_albedo")
+
+        def clean(picture):
+            return denoise.denoised(picture, albedo, normal)
+
+        self.final, self.indirect = clean(truth.final(truth.longest)), clean(truth.indirect(truth.longest))
+        self.halves = [clean(truth.final(truth.longest, half)) for half in range(2)]
+
+
+def add_visible(one_table, rendered, truth, clean, mask):
     """Blotches and dots of the light, in each row of a table. Where a way has no indirect light by itself, the error of
     its whole picture counts as the light's."""
-    indirect, final = truth.indirect(truth.longest), truth.final(truth.longest)
+    indirect = truth.indirect(truth.longest)
     halves = [truth.indirect(truth.longest, half) for half in range(2)]
     for row, each in zip(one_table["rows"], rendered, strict=True):
         if each.failure or each.bounces is not None:
             continue
-        light = each.indirect if each.indirect is not None else each.final - final + indirect
+        own = each.indirect is not None
+        blotchy = each.indirect if own else each.final - truth.final(truth.longest) + indirect
+        dotty = each.indirect if own else each.final - clean.final + clean.indirect
         row["visible"] = {
-            "blotches": visible.blotches(light, indirect, mask, halves),
-            "dots": visible.dots(light, indirect, mask, halves),
+            "blotches": visible.blotches(blotchy, indirect, mask, halves),
+            "dots": visible.dots(dotty, clean.indirect, mask),
         }
 
 
-def whole_pictures(scene, rendered, truth, masks):
+def whole_pictures(scene, rendered, clean, masks):
     """{picture: {"cycles", "reachable", "cycles, <kind>"}}: LDR-FLIP of the whole picture as the scene's view transform
     shows it, against Cycles, the same on each kind of surface, and against the reachable picture, which is one of the
     rows. visible.NOISE: what the reference's own noise may have in each number, from its halves."""
-    eevee, reference = rendered[0], truth.final(truth.longest)
-    best = visible.reachable(eevee.final, eevee.indirect, truth.indirect(truth.longest))
-    to_cycles, to_best = (visible.displayed(scene, picture) for picture in (reference, best))
+    eevee = rendered[0]
+    best = visible.reachable(eevee.final, eevee.indirect, clean.indirect)
+    to_cycles, to_best = (visible.displayed(scene, picture) for picture in (clean.final, best))
     pictures = {each.name: each.final for each in rendered if not each.failure and each.bounces is None}
     found = {}
     for name, picture in (pictures | {visible.REACHABLE: best}).items():
@@ -155,7 +175,7 @@ def whole_pictures(scene, rendered, truth, masks):
             "cycles": float(errors.mean(dtype=float)),
             "reachable": float(visible.flip_map(own, to_best).mean(dtype=float)),
         } | {f"cycles, {kind}": float(errors[mask].mean(dtype=float)) for kind, mask in masks.items() if mask.any()}
-    halves = [visible.displayed(scene, truth.final(truth.longest, half)) for half in range(2)]
+    halves = [visible.displayed(scene, half) for half in clean.halves]
     found[visible.NOISE] = {"cycles": float(visible.flip_map(*halves).mean(dtype=float)) / 2}
     return found
 

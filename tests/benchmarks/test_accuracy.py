@@ -16,7 +16,7 @@ import scenes
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
 
-from benchmarks.accuracy import accuracy, accuracy_report, candidates, measuring, metrics, references
+from benchmarks.accuracy import accuracy, accuracy_report, candidates, denoise, measuring, metrics, references
 from benchmarks.cost import shares
 
 SHAPE = 24, 32
@@ -97,6 +97,32 @@ def test_an_error_is_told_from_the_noise_of_its_reference(spread):
     error = metrics.compare(picture, true, mask, flip=False)["l1"]
     assert metrics.compare(picture, (first + second) / 2, mask, flip=False)["l1"] > 1.1 * error
     assert metrics.l1_without_noise(picture, first, second, mask) == pytest.approx(error, rel=0.03)
+
+
+@pytest.mark.parametrize("noise", [0.1, 0.2])
+def test_an_error_is_told_even_under_noise_as_large_as_itself(noise):
+    """Or twice as large: within a seventh, where what is measured is half too much, or more than twice."""
+    rng = np.random.default_rng(3)
+    true, mask = np.ones((200, 200, 3)), np.ones((200, 200), bool)
+    picture = true + 0.1 * rng.normal(size=true.shape)
+    first, second = (true + 2**0.5 * noise * rng.normal(size=true.shape) for _ in range(2))
+    error = metrics.compare(picture, true, mask, flip=False)["l1"]
+    assert metrics.compare(picture, (first + second) / 2, mask, flip=False)["l1"] > 1.4 * error
+    assert metrics.l1_without_noise(picture, first, second, mask) == pytest.approx(error, rel=0.15)
+
+
+def test_blenders_denoiser_takes_noise_and_leaves_edges_and_energy(fresh):
+    """Two walls under a light that falls off: a tenth of the noise is left; and no scene, picture or tree."""
+    rng = np.random.default_rng(0)
+    albedo = np.where(np.arange(160)[None, :, None] < 80, (0.8, 0.2, 0.1), (0.1, 0.4, 0.9)) * np.ones((90, 1, 1))
+    true = albedo * np.linspace(0.2, 3, 90)[:, None, None]
+    noisy = true * (1 + 0.3 * rng.normal(size=true.shape))
+    references.render(scenes.box(fresh), 1, 1, 0)  # the first render makes the image Render Result
+    before = scenes.written_down()
+    found = denoise.denoised(noisy, albedo, np.broadcast_to((0.0, 0.0, 1.0), true.shape))
+    assert scenes.written_down() == before
+    left, error = (np.abs(each - true).mean() / true.mean() for each in (found, noisy))
+    assert left < 0.12 * error and found.mean() == pytest.approx(true.mean(), rel=0.01)
 
 
 class MadeUpTruth:
