@@ -47,7 +47,7 @@ DENOISER = {
     "denoising_quality": "HIGH",
 }
 SEED = 1 << 20  # of these: none that a reference uses
-SLOW = 20  # seconds, over which a frame is timed once
+SLOW = 8  # seconds, over which a frame is timed once
 COMPILED = 10  # seconds, of which compilation is a small part
 
 

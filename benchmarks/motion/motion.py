@@ -30,7 +30,7 @@ from clip import frame_range
 from make_samples import MOVING as SHOTS
 
 from .. import ROOT
-from ..accuracy import accuracy, candidates, references
+from ..accuracy import accuracy, candidates, denoise, references
 from . import motion_measures, motion_pictures, motion_report
 
 FOLDER = ROOT / "sample_blends" / "moving"
@@ -165,17 +165,18 @@ def diffuse(frame):
 
 
 def truth(scene, path, samples):
-    """Two arrays (2, frames, H, W, 3) float32 by Cycles in two halves, `samples` or more each: the indirect light, and
-    the whole picture."""
-    source, light, pictures = references.source_key(path), [], []
+    """Three arrays float32 by Cycles: the indirect light and the whole picture, (2, frames, H, W, 3), in two halves of
+    `samples` or more each; and the albedo, (frames, H, W, 3)."""
+    source, light, pictures, albedo = references.source_key(path), [], [], []
     for frame in range(scene.frame_start, scene.frame_end + 1):
         scene.frame_set(frame)
         one = references.Truth(scene, BOUNCES, source)
         one.extend(BOUNCES, samples)
         light.append([one.indirect(BOUNCES, half) for half in range(2)])
         pictures.append([one.final(BOUNCES, half) for half in range(2)])
+        albedo.append(one.of[BOUNCES].mean("albedo") + one.of[BOUNCES].mean("other_albedo"))
         print(f"  Cycles, frame {frame}", file=sys.stderr, flush=True)
-    return (np.array(found, np.float32).swapaxes(0, 1) for found in (light, pictures))
+    return *(np.array(found, np.float32).swapaxes(0, 1) for found in (light, pictures)), np.array(albedo)
 
 
 def measure(path, options, afterlight):
@@ -186,7 +187,12 @@ def measure(path, options, afterlight):
     scene.view_layers[0].use_pass_vector = True
     seconds, plain = job(scene, layers=True)
     scene.view_layers[0].use_pass_vector = False
-    light, pictures = truth(scene, path, options.truth_samples)
+    light, pictures, albedo = truth(scene, path, options.truth_samples)
+
+    def clean(shot):
+        guides = zip(shot, albedo, (frame["Normal"] for frame in plain), strict=True)
+        return np.array([denoise.denoised(*each) for each in guides])
+
     surfaces = [surface(frame) for frame in plain]
     shot = motion_report.Shot(
         path.stem,
@@ -195,7 +201,9 @@ def measure(path, options, afterlight):
         pictures,
         [motion_measures.track(*pair) for pair in zip(surfaces, surfaces[1:])],
         motion_pictures.Pictures(
-            motion_pictures.displayed(scene, pictures.mean(0)), motion_pictures.displayed(scene, pictures)
+            motion_pictures.displayed(scene, clean(pictures.mean(0))),
+            motion_pictures.displayed(scene, pictures),
+            motion_pictures.displayed(scene, np.array([clean(half) for half in pictures])),
         ),
     )
     for way in ways_of(options.ways, afterlight, options.accumulate):
@@ -210,11 +218,11 @@ def measure(path, options, afterlight):
         whole = np.array([picture(frame) for frame in frames])
         shot.add(way.name, None if way.whole else added(way, frames, plain), whole, spent, way.without)
         shot.pictures.add(way.name, motion_pictures.displayed(scene, whole))
-    reachable = np.array([picture(frame) for frame in plain]) + light  # EEVEE's own has no indirect light
+    direct = np.array([picture(frame) for frame in plain])  # EEVEE's own has no indirect light
     shot.pictures.add(
         motion_report.REACHABLE,
-        motion_pictures.displayed(scene, reachable.mean(0)),
-        motion_pictures.displayed(scene, reachable),
+        motion_pictures.displayed(scene, direct + clean(light.mean(0))),
+        motion_pictures.displayed(scene, direct + light),
     )
     return shot
 

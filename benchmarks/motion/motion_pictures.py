@@ -13,12 +13,14 @@ from . import motion_measures as measures
 
 @dataclass
 class Pictures:
-    """A shot as displayed. truth: (frames, H, W, 3), the mean of the reference's halves. halves: (2, frames, H, W, 3),
-    each displayed by itself. The view transform bends what it shows, so the mean of these is not quite `truth`; flicker
-    is told against it, since then its noise is half their difference, however much of that there is."""
+    """A shot as displayed. truth: (frames, H, W, 3), the reference as Blender's denoiser leaves it, for LDR-FLIP, which
+    sees noise in every pixel; clean: (2, frames, H, W, 3), its halves likewise. halves: (2, frames, H, W, 3), with
+    their noise. Flicker is told against the mean of these, since then its noise is half their difference, however much
+    of that there is."""
 
     truth: np.ndarray
     halves: np.ndarray
+    clean: np.ndarray
     shown: dict = field(default_factory=dict)  # by way: (frames, H, W, 3)
     errors: dict = field(default_factory=dict)  # by way: (frames, H, W, 3), from the mean of the halves
     noises: dict = field(default_factory=dict)  # by way: the reference's noise in that
@@ -35,13 +37,13 @@ class Pictures:
         return (self.halves[0] - self.halves[1]) / 2
 
     def flip(self, name):
-        """LDR-FLIP, mean over all pixels and frames. It holds the reference's noise, for which see own_flip()."""
-        return self._flip(self.shown[name])
+        """LDR-FLIP, mean over all pixels and frames. It holds what own_flip() tells."""
+        return self._flip(self.shown[name], self.truth)
 
     def own_flip(self):
-        """LDR-FLIP of the reference by its noise: a half differs from the mean by as much as the mean from the
-        truth."""
-        return self._flip(self.halves[0])
+        """LDR-FLIP of the reference by what is left of its noise: a half differs from the mean of both by as much as
+        the mean from the truth."""
+        return self._flip(self.clean[0], self.clean.mean(0))
 
     def flicker(self, name, tracks):
         """(frames - 1,): mean square change of the error along the tracks, the reference's noise taken off."""
@@ -51,8 +53,8 @@ class Pictures:
         """(frames - 1,): what is taken off."""
         return measures.changes(self.noise, tracks)
 
-    def _flip(self, shown):
-        return float(np.mean([visible.ldr_flip(*pair) for pair in zip(shown, self.truth, strict=True)]))
+    def _flip(self, shown, others):
+        return float(np.mean([visible.ldr_flip(*pair) for pair in zip(shown, others, strict=True)]))
 
 
 def displayed(scene, pictures):

@@ -225,9 +225,10 @@ def page(options, rows):
             "The whole picture through the scene's view transform against Cycles', on equal terms: all errors of all "
             "ways count. EEVEE's direct light differs from Cycles', and no indirect light puts that right: the row "
             "*reachable*, EEVEE's picture with Cycles' indirect light, shows what of LDR-FLIP and flicker Afterlight "
-            "cannot take away. LDR-FLIP: mean over all pixels and frames; the last row has what the reference's "
-            "noise comes to by itself, which is in all the others. Flicker: as above, of the displayed picture's "
-            "error, over the screen's white; the surfaces' inner pixels alone, and the reference's noise taken off. "
+            "cannot take away. LDR-FLIP: mean over all pixels and frames, against the reference as Blender's denoiser "
+            "leaves it; the last row has what is left of its noise, which may be in all the others. Flicker: as above, "
+            "of the displayed picture's error, over the screen's white; the surfaces' inner pixels alone, and the "
+            "reference's noise taken off. "
             "Seconds a frame: the whole job on the clock over its frames, with all that a job does once, as "
             "compiling shaders, most of which the first EEVEE job of a run pays for. They are this "
             "machine's, for pictures of this size; not all ways grow alike with the pixels.",

@@ -111,7 +111,7 @@ def test_rows():
     truth = np.where(np.arange(8) < 2, 4.0, 1.0)[:, None, None, None] * np.ones((8, *SIZE, 3))
     halves = truth + draw(scale=0.2, size=(2, *truth.shape))
     wall = surface()
-    pictures = motion_pictures.Pictures(halves.mean(0) / 8, halves / 8)
+    pictures = motion_pictures.Pictures(halves.mean(0) / 8, halves / 8, halves / 8)
     shot = motion_report.Shot("shot", 5, halves, halves, [measures.track(wall, wall)] * 7, pictures)
     shown = 0.9 * truth + draw(scale=0.1, size=truth.shape)
     late = 0.9 * truth

@@ -38,7 +38,7 @@ def shot():
     """(light, its two noisy halves, Pictures of them): half as bright on the left, nothing moves."""
     light = np.where(np.arange(SIZE[1]) < 32, 0.15, 0.3)[:, None] * np.ones((FRAMES, *SIZE, 3))
     halves = light + draw(1, 2, scale=0.03)
-    return light, halves, motion_pictures.Pictures(bent(halves.mean(0)), bent(halves))
+    return light, halves, motion_pictures.Pictures(bent(halves.mean(0)), bent(halves), bent(halves))
 
 
 def test_a_still_error_does_not_flicker_on_the_screen_and_noise_does(shot):
@@ -54,7 +54,7 @@ def test_much_noise_of_the_reference_is_taken_off_too():
     """As much noise as light: the displayed mean of the halves is far from the mean of the displayed halves."""
     light = np.full((FRAMES, *SIZE, 3), 0.1)
     halves = light + np.random.default_rng(1).exponential(size=(2, *light.shape)) * 0.2 - 0.2
-    pictures = motion_pictures.Pictures(bent(halves.mean(0)), bent(halves))
+    pictures = motion_pictures.Pictures(bent(halves.mean(0)), bent(halves), bent(halves))
     pictures.add("true", bent(light))
     assert abs(pictures.flicker("true", still()).mean()) < 0.05 * pictures.own_flicker(still()).mean()
 
