@@ -40,7 +40,7 @@ bench: package   ## what it costs: beside EEVEE, by what the scene weighs, and a
 speed: setup     ## the last of these: the light alone, pass by pass, on this machine's GPU
 	$(python) -m benchmarks.gpu
 
-accuracy: package ## error beside EEVEE and Cycles; half an hour the first time; make accuracy ACCURACY='--scenes FOLDER' for yours
+accuracy: package ## error beside EEVEE and denoised Cycles; an hour the first time; make accuracy ACCURACY='--scenes FOLDER' for yours
 	$(python) -m benchmarks.accuracy $(or $(ACCURACY),--out docs/measured/accuracy --page docs/measured/accuracy.md)
 
 motion: package  ## error, flicker, lag and trails in moving shots; make motion MOTION='pillars --frames 1-8' for less

@@ -143,10 +143,10 @@ class Clean:
 
 
 def add_visible(one_table, rendered, truth, clean, mask):
-    """Blotches and dots of the light, in each row of a table. Where a way has no indirect light by itself, the error of
-    its whole picture counts as the light's."""
+    """Blotches and dots of the light, over the brightness of the whole picture, in each row of a table. Where a way has
+    no indirect light by itself, the error of its whole picture counts as the light's."""
     indirect = truth.indirect(truth.longest)
-    halves = [truth.indirect(truth.longest, half) for half in range(2)]
+    halves, final_halves = ([part(truth.longest, half) for half in range(2)] for part in (truth.indirect, truth.final))
     for row, each in zip(one_table["rows"], rendered, strict=True):
         if each.failure or each.bounces is not None:
             continue
@@ -154,8 +154,8 @@ def add_visible(one_table, rendered, truth, clean, mask):
         blotchy = each.indirect if own else each.final - truth.final(truth.longest) + indirect
         dotty = each.indirect if own else each.final - clean.final + clean.indirect
         row["visible"] = {
-            "blotches": visible.blotches(blotchy, indirect, mask, halves),
-            "dots": visible.dots(dotty, clean.indirect, mask),
+            "blotches": visible.blotches(blotchy, indirect, mask, clean.final, halves if own else final_halves),
+            "dots": visible.dots(dotty, clean.indirect, mask, clean.final),
         }
 
 

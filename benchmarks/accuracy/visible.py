@@ -14,17 +14,19 @@ DARKEST = 0.05  # of the mean light: by less no error is divided
 STANDS_OUT = 0.25  # of the local brightness, above which a pixel is a dot
 
 
-def blotches(light, reference, mask, halves=None):
+def blotches(light, reference, mask, picture=None, halves=None):
     """Root mean square of the relative error of `light` in the band of FINEST to COARSEST pixels, over the mask.
 
-    The error is that of luminance, averaged over FINEST pixels, over the reference's likewise averaged, and what lies
-    outside the mask counts neither as error nor as light around. halves: two independent references of which
-    `reference` is the mean: what their own noise comes to is taken off. None for an empty mask or a black reference."""
+    The error is that of luminance, averaged over FINEST pixels, over that of the picture likewise averaged, and what
+    lies outside the mask counts neither as error nor as light around. picture: that the light is a part of, the true
+    one; `reference` itself without. halves: two independent references of which `reference` is the mean: what their own
+    noise comes to is taken off. None for an empty mask or a black picture."""
     truth = reference @ LUMINANCE
-    mean = truth[mask].mean() if mask.any() else 0
+    shown = truth if picture is None else picture @ LUMINANCE
+    mean = shown[mask].mean() if mask.any() else 0
     if not mean > 0:
         return None
-    around = np.maximum(_smooth(truth, mask, FINEST), DARKEST * mean)
+    around = np.maximum(_smooth(shown, mask, FINEST), DARKEST * mean)
 
     def strength(error):
         relative = np.where(mask, _smooth(error, mask, FINEST) / around, 0)
@@ -37,19 +39,20 @@ def blotches(light, reference, mask, halves=None):
     return float(np.sqrt(max(found, 0.0)))
 
 
-def dots(light, reference, mask, halves=None):
+def dots(light, reference, mask, picture=None, halves=None):
     """Pixels of the mask, per million, whose error differs from the median error of their eight neighbours by more than
-    STANDS_OUT of the reference's mean luminance over 3 x 3 pixels. Neighbours outside the mask do not count; a pixel
-    with fewer than three is left out. halves: as blotches() has them; as many dots as their noise has are taken off.
-    None for an empty mask or a black reference."""
+    STANDS_OUT of the picture's mean luminance over 3 x 3 pixels. Neighbours outside the mask do not count; a pixel
+    with fewer than three is left out. picture, halves: as blotches() has them; as many dots as their noise has are
+    taken off. None for an empty mask or a black picture."""
     truth = reference @ LUMINANCE
-    mean = truth[mask].mean() if mask.any() else 0
+    shown = truth if picture is None else picture @ LUMINANCE
+    mean = shown[mask].mean() if mask.any() else 0
     if not mean > 0:
         return None
-    around = _neighbours(np.where(mask, truth, np.nan))
+    around = _neighbours(np.where(mask, shown, np.nan))
     enough = np.isfinite(around).sum(0) >= 3
     counted = mask & enough
-    brightness = np.nanmean(np.concatenate([around, truth[None]]), axis=0)
+    brightness = np.nanmean(np.concatenate([around, shown[None]]), axis=0)
     least = STANDS_OUT * np.maximum(brightness, DARKEST * mean)
 
     def count(error):

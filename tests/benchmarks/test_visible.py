@@ -79,7 +79,7 @@ def test_the_references_own_stains_are_taken_off(picture):
     halves = [stains(light, 10, 0.1, seed) for seed in (1, 2)]
     mean = (halves[0] + halves[1]) / 2
     with_noise = visible.blotches(light, mean, mask)
-    assert with_noise > 0.03 and visible.blotches(light, mean, mask, halves) < 0.5 * with_noise
+    assert with_noise > 0.03 and visible.blotches(light, mean, mask, halves=halves) < 0.5 * with_noise
 
 
 @pytest.mark.parametrize("strength", [1.0, -0.6])
@@ -94,9 +94,9 @@ def test_the_references_own_dots_are_taken_off(picture):
     halves = [specks(light, mask, 400, 2.0, seed) for seed in (1, 2)]
     mean = (halves[0] + halves[1]) / 2
     alone = visible.dots(light, mean, mask)
-    assert alone > 5e4 and visible.dots(light, mean, mask, halves) < 0.05 * alone
+    assert alone > 5e4 and visible.dots(light, mean, mask, halves=halves) < 0.05 * alone
     spotted = specks(light, mask, 400, 2.0, 3)
-    assert visible.dots(spotted, mean, mask, halves) == pytest.approx(1e6 * 400 / mask.sum(), rel=0.25)
+    assert visible.dots(spotted, mean, mask, halves=halves) == pytest.approx(1e6 * 400 / mask.sum(), rel=0.25)
 
 
 def test_dots_let_blotches_blur_and_brightness_pass(picture):
@@ -142,3 +142,13 @@ def test_displayed_is_what_blender_shows(fresh):
     assert np.abs(shown - expected).max() < 2e-3 and fresh.render.image_settings.file_format == "PNG"
     fresh.view_settings.view_transform = "AgX"
     assert visible.displayed(fresh, ramp)[0, -1, 0] < 1 and visible.displayed(fresh, ramp, 2)[0, 8, 0] > shown[0, 8, 0]
+
+
+def test_errors_count_by_the_brightness_of_the_picture_that_shows_them(picture):
+    """Where a lamp outshines the indirect light three to one, its blotches are a quarter of what they are alone, and
+    specks of half of it are none."""
+    light, mask = picture
+    stained, spotted = stains(light, 10), specks(light, mask, 40, 0.5)
+    alone = visible.blotches(stained, light, mask)
+    assert visible.blotches(stained, light, mask, 4 * light) == pytest.approx(alone / 4, rel=1e-6)
+    assert visible.dots(spotted, light, mask) > 0 == visible.dots(spotted, light, mask, 4 * light)
