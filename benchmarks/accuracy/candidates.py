@@ -59,7 +59,7 @@ def diffuse_samples():
 
 
 def samples():
-    """Paths of the sample scenes that `make accuracy` measures: the matt ones, and those like artists' scenes."""
+    """Paths of the sample scenes that `make accuracy` measures: the diffuse ones, and those of all materials."""
     from make_samples import ARTISTS
 
     return diffuse_samples() + sorted(SAMPLES / "artists" / f"{name}.blend" for name in ARTISTS)

@@ -52,8 +52,8 @@ def noise(first, second, mask):
 def l1_without_noise(picture, first, second, mask):
     """Relative L1 error of a picture against what two equally noisy, independent references would come to: an estimate.
 
-    For errors and noise that are normally distributed the square of the mean of |error + noise| is a straight line in
-    the noise's variance, which is half as large in the mean of both as in each: it ends at 2 l1(mean)^2 - l1(each)^2.
+    For errors and noise that are normally distributed the square of the mean of |error + noise| is linear in the
+    noise's variance, which the mean of both references halves: extrapolated to no noise, 2 l1(mean)^2 - l1(each)^2.
     For other distributions (Laplace's, uniform, mixtures of two scales) that is within a tenth where the noise is as
     large as the error, and too large rather than too small. None for black references."""
     both = compare(picture, (first + second) / 2, mask, flip=False)["l1"]
