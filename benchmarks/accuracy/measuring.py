@@ -132,8 +132,7 @@ class Clean:
     of each half."""
 
     def __init__(self, truth, normal):
-        reference = truth.of[truth.longest]
-        albedo = reference.mean("albedo") + reference.mean("other_albedo")
+        albedo = truth.of[truth.longest].whole_albedo()
 
         def clean(picture):
             return denoise.denoised(picture, albedo, normal)
@@ -175,9 +174,7 @@ def whole_pictures(scene, rendered, clean, masks):
             "cycles": float(errors.mean(dtype=float)),
             "reachable": float(visible.flip_map(own, to_best).mean(dtype=float)),
         } | {f"cycles, {kind}": float(errors[mask].mean(dtype=float)) for kind, mask in masks.items() if mask.any()}
-    halves = [visible.displayed(scene, half) for half in clean.halves]
-    # A half differs from the mean of both by as much as that from the truth.
-    found[visible.NOISE] = {"cycles": visible.ldr_flip(halves[0], (halves[0] + halves[1]) / 2)}
+    found[visible.NOISE] = {"cycles": visible.flip_of_noise([visible.displayed(scene, half) for half in clean.halves])}
     return found
 
 

@@ -99,6 +99,10 @@ class Reference:
         direct, albedo = self.mean("direct"), self.mean("albedo")
         return np.divide(direct, albedo, out=np.zeros_like(direct), where=albedo > 1e-6)
 
+    def whole_albedo(self):
+        """(H, W, 3): of diffuse, gloss and transmission together, as denoisers want it."""
+        return self.mean("albedo") + self.mean("other_albedo")
+
     def not_diffuse(self):
         """(H, W) bool: pixels whose colour is gloss or glass for more than NOT_DIFFUSE of it."""
         matt, other = self.mean("albedo").sum(-1), self.mean("other_albedo").sum(-1)

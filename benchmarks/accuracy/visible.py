@@ -71,6 +71,12 @@ def ldr_flip(picture, reference):
     return float(flip_map(picture, reference).mean(dtype=np.float64))
 
 
+def flip_of_noise(halves):
+    """Mean LDR-FLIP that the noise of a reference has in a comparison with it. halves: two displayed pictures of
+    independent noise, whose mean is the reference: each differs from that by as much as that from the truth."""
+    return ldr_flip(halves[0], (halves[0] + halves[1]) / 2)
+
+
 def flip_map(picture, reference):
     """(H, W): LDR-FLIP error of two displayed pictures, (H, W, 3) in 0..1, encoded as the screen has them (sRGB), at
     the viewing distance that FLIP assumes."""

@@ -174,7 +174,7 @@ def truth(scene, path, samples):
         one.extend(BOUNCES, samples)
         light.append([one.indirect(BOUNCES, half) for half in range(2)])
         pictures.append([one.final(BOUNCES, half) for half in range(2)])
-        albedo.append(one.of[BOUNCES].mean("albedo") + one.of[BOUNCES].mean("other_albedo"))
+        albedo.append(one.of[BOUNCES].whole_albedo())
         print(f"  Cycles, frame {frame}", file=sys.stderr, flush=True)
     return *(np.array(found, np.float32).swapaxes(0, 1) for found in (light, pictures)), np.array(albedo)
 

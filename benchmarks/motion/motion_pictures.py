@@ -38,12 +38,11 @@ class Pictures:
 
     def flip(self, name):
         """LDR-FLIP, mean over all pixels and frames. It holds what own_flip() tells."""
-        return self._flip(self.shown[name], self.truth)
+        return float(np.mean([visible.ldr_flip(*pair) for pair in zip(self.shown[name], self.truth, strict=True)]))
 
     def own_flip(self):
-        """LDR-FLIP of the reference by what is left of its noise: a half differs from the mean of both by as much as
-        the mean from the truth."""
-        return self._flip(self.clean[0], self.clean.mean(0))
+        """LDR-FLIP of the reference by what is left of its noise, mean over all frames."""
+        return float(np.mean([visible.flip_of_noise(halves) for halves in self.clean.swapaxes(0, 1)]))
 
     def flicker(self, name, tracks):
         """(frames - 1,): mean square change of the error along the tracks, the reference's noise taken off."""
@@ -52,9 +51,6 @@ class Pictures:
     def own_flicker(self, tracks):
         """(frames - 1,): what is taken off."""
         return measures.changes(self.noise, tracks)
-
-    def _flip(self, shown, others):
-        return float(np.mean([visible.ldr_flip(*pair) for pair in zip(shown, others, strict=True)]))
 
 
 def displayed(scene, pictures):
