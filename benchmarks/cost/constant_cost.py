@@ -22,7 +22,7 @@ import numpy as np
 import session
 
 from .. import commit
-from . import bench, cost_report
+from . import bench, boxes, cost_report
 
 POLYGONS = 1_000, 3_000_000
 LIGHTS = 1, 1_000
@@ -58,25 +58,15 @@ def build(polygons, lights, size):
     scene = bpy.context.scene
     side = round((polygons / (6 * len(BOXES))) ** 0.5)
 
-    def add(name, data, location=(0, 0, 0)):
-        thing = bpy.data.objects.new(name, data)
-        thing.location = location
-        scene.collection.objects.link(thing)
-        return thing
-
     for (low, high), color in zip(BOXES, COLORS, strict=True):
-        material = bpy.data.materials.new("Matt")
-        material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = color
-        material.node_tree.nodes["Principled BSDF"].inputs["Roughness"].default_value = 1
-        mesh = _box(np.array(low), np.array(high), side)
-        mesh.materials.append(material)
-        add("Box", mesh)
+        boxes.put("Box", boxes.box(np.array(low), np.array(high), side, inside=(low, high) == BOXES[0]), color)
     lamp = bpy.data.lights.new("Lamp", "POINT")
     lamp.energy, lamp.use_shadow = POWER / lights, False
     across = np.ceil(lights**0.5)
     for k in range(lights):
-        add("Lamp", lamp, (-1.6 + 3.2 * (k % across + 0.5) / across, -2.4 + 4.8 * (k // across + 0.5) / across, 2.3))
-    scene.camera = add("Camera", bpy.data.cameras.new("Camera"), (0, -2.9, 1.3))
+        place = -1.6 + 3.2 * (k % across + 0.5) / across, -2.4 + 4.8 * (k // across + 0.5) / across, 2.3
+        boxes.link(bpy.data.objects.new("Lamp", lamp), place)
+    scene.camera = boxes.link(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")), (0, -2.9, 1.3))
     scene.camera.rotation_euler = np.pi / 2, 0, 0
     scene.camera.data.lens = 24
     scene.render.engine = "BLENDER_EEVEE"
@@ -84,23 +74,6 @@ def build(polygons, lights, size):
     scene.eevee.light_threshold = 1e-6  # or each of many weak lights would end a few hand's breadths away
     scene.render.resolution_x, scene.render.resolution_y = size
     return scene, 6 * len(BOXES) * side**2
-
-
-def _box(low, high, side):
-    """A mesh of a box with side x side quadrilaterals on each face."""
-    import bpy
-
-    steps = np.linspace(0, 1, side + 1)
-    u, v = (grid.ravel() for grid in np.meshgrid(steps, steps))
-    corner = np.arange(side * (side + 1)).reshape(side, side + 1)[:, :-1].ravel()
-    quads = np.stack([corner, corner + 1, corner + side + 2, corner + side + 1], -1)
-    vertices, faces = [], []
-    for axis, end in product(range(3), (0.0, 1.0)):
-        faces.append(quads + len(u) * len(faces))
-        vertices.append(np.insert(np.stack([u, v], -1), axis, end, axis=-1))
-    mesh = bpy.data.meshes.new("Box")
-    mesh.from_pydata(low + np.concatenate(vertices) * (high - low), [], np.concatenate(faces))
-    return mesh
 
 
 def rooms(afterlight, polygons, lights, size):
