@@ -10,16 +10,13 @@ import argparse
 import json
 import os
 import shlex
-import subprocess
-import sys
-import tempfile
 import time
 import traceback
 from pathlib import Path
 
 import session
 
-from .. import ROOT, commit
+from .. import ROOT, apart, commit
 from . import accuracy_report, candidates, measuring, references
 
 WAYS = "eevee,tracing-best,production,cycles-1,cycles-4,cycles-16"
@@ -64,27 +61,13 @@ def measure_all(options, path):
         names.append(blend.stem if blend.stem not in names else f"{blend.stem}_{len(names)}")
         print(f"{blend.name}:", flush=True)
         start = time.perf_counter()
-        entry = measure_apart(options, blend, names[-1])
+        entry = apart.measured("benchmarks.accuracy", *arguments_of(options), "--name", names[-1], str(blend))
         found["machine"] = entry.pop("machine", found["machine"])
         scene = {"name": names[-1], "file": blend.name, "took": time.perf_counter() - start} | entry
         found["scenes"].append(scene)
         path.write_text(json.dumps(found, indent=1) + "\n")
         print(f"  {verdict(scene)}, in {scene['took']:.0f} s", flush=True)
     return found
-
-
-def measure_apart(options, blend, name):
-    """One file's entry, from a process of its own: one that brings Blender down leaves the rest alone."""
-    with tempfile.TemporaryDirectory(prefix="afterlight-accuracy-") as folder:
-        into = Path(folder) / "entry.json"
-        own = ["--name", name, "--into", str(into), str(blend)]
-        # Blender says a line a frame on stdout; what a person needs to know comes on stderr.
-        code = subprocess.run(
-            [sys.executable, "-m", "benchmarks.accuracy", *arguments_of(options), *own],
-            cwd=ROOT,
-            stdout=subprocess.DEVNULL,
-        ).returncode
-        return json.loads(into.read_text()) if into.exists() else {"failed": f"Blender ended with code {code}"}
 
 
 def verdict(scene):

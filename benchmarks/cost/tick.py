@@ -9,7 +9,6 @@ Writes a JSON file after each case, and the page from it. Exit code 1 where a ca
 import argparse
 import json
 import shlex
-import subprocess
 import sys
 import tempfile
 import time
@@ -18,7 +17,7 @@ from pathlib import Path
 
 import session
 
-from .. import ROOT, commit
+from .. import ROOT, apart, commit
 from . import bench, shares, tick_cases, tick_report
 
 PAGE = ROOT / "docs" / "measured" / "tick.md"
@@ -153,14 +152,8 @@ def measure(series, case, options):
 
 def measure_apart(series, case, options):
     """One case in a process of its own."""
-    with tempfile.TemporaryDirectory(prefix="afterlight-tick-") as folder:
-        into = Path(folder) / "case.json"
-        size = "x".join(map(str, options.size))
-        command = ["-m", "benchmarks.cost.tick", series, "--case", case, "--size", size, "--into", str(into)]
-        run = subprocess.run([sys.executable, *command], cwd=ROOT, stdout=subprocess.DEVNULL)
-        if into.exists():
-            return json.loads(into.read_text())
-        return {"failed": f"Blender ended with code {run.returncode}"}
+    size = "x".join(map(str, options.size))
+    return apart.measured("benchmarks.cost.tick", series, "--case", case, "--size", size)
 
 
 def measure_into(options):

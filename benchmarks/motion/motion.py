@@ -19,7 +19,7 @@ import shlex
 import sys
 import tempfile
 import time
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,7 +34,7 @@ from ..accuracy import accuracy, candidates, denoise, references
 from . import motion_measures, motion_pictures, motion_report
 
 FOLDER = ROOT / "sample_blends" / "moving"
-RIVALS = {f"cycles-{samples}": samples for samples in candidates.CYCLES_SAMPLES}
+RIVALS = tuple(f"cycles-{samples}" for samples in candidates.CYCLES_SAMPLES)
 ALONE = "eevee", "tracing", "tracing-best", *RIVALS  # the ways without Afterlight
 WAYS = "eevee", "tracing-best", "production", "production+history", *RIVALS  # those that are measured unless told
 BOUNCES = 4
@@ -55,19 +55,18 @@ class Way:
 
 def ways_of(names, afterlight, accumulate=None):
     """[Way] by the names that --ways takes."""
-    known = {
-        "eevee": Way("EEVEE", lambda scene: nullcontext()),
-        "tracing": Way("EEVEE ray tracing, default", lambda scene: candidates.traced(scene, {}), True),
-        "tracing-best": Way("EEVEE ray tracing, best", lambda scene: candidates.traced(scene, candidates.BEST), True),
-        **{name: rival(samples) for name, samples in RIVALS.items()},
-    }
-    return [known.get(name) or lit(afterlight, name, accumulate) for name in names]
+    return [alone(name, afterlight) if name in ALONE else lit(afterlight, name, accumulate) for name in names]
 
 
-def rival(samples):
+def alone(name, afterlight):
+    """One of accuracy's ways without Afterlight."""
+    way = candidates.ways_of([name], afterlight, BOUNCES)[-1]
+    return rival(way) if name in RIVALS else Way(way.name, way.mode, traced=way.group == "EEVEE ray tracing")
+
+
+def rival(denoised):
     """Cycles with few samples and Blender's denoiser, another noise in every frame, as animators set it: noise that
     stays on the screen while the scene moves looks like dirt on the lens."""
-    denoised = candidates.denoised(BOUNCES, samples)
 
     @contextmanager
     def mode(scene):
@@ -266,7 +265,7 @@ def parse(arguments):
         (FOLDER / f"{name}.blend" if name in SHOTS else Path(name)).resolve() for name in options.shots or SHOTS
     ]
     options.ways = options.ways.split(",")
-    presets = {path.stem for path in (ROOT / "addon" / "presets" / "afterlight").glob("*.py")}
+    presets = set(candidates.names_of_ways()).difference(ALONE)
     known = {*ALONE, *presets, *(f"{name}+history" for name in presets)}
     if unknown := [name for name in options.ways if name not in known]:
         parser.error(f"there is no way {unknown[0]}; there are {', '.join(sorted(known))}")
