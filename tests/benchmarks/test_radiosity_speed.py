@@ -173,17 +173,10 @@ def with_floor(name, run):
 
 
 @pytest.fixture
-def found():
+def found(machine):
     """Numbers of a machine of Radiosity alone."""
     return {
-        "machine": {
-            "renderer": "A GPU",
-            "vendor": "A vendor",
-            "version": "4.6",
-            "processor": "A processor",
-            "cores": 8,
-            "timer": "timer queries",
-        },
+        "machine": machine,
         "radiosity": {
             "command": "python -m benchmarks.gpu --method radiosity",
             "commit": "0123456",
