@@ -11,7 +11,7 @@ import numpy as np
 
 import textures
 from parts import aim, box, camera, glossy, glowing, light_data, mesh, place, render_settings, turned
-from procedural import sky_for_the_camera
+from procedural import sky_for_the_camera, sky_panel
 
 SIZE, PICTURES = 2048, 30
 HALF, DEPTH, HEIGHT = 4.2, 19.0, 5.0  # the hall lies from y = 0, x about 0
@@ -46,8 +46,7 @@ def build(scene):
     sun = light_data("SUN", "Sun", (1, 0.85, 0.64), 30, angle=0.01)
     place("Sun", sun, None, (0, 0, 20), aim((0, 0, 0), (-0.30, 0.34, -1)))
     for y in (5.0, 9.8, 14.6):
-        sky = light_data("AREA", "Skylight", (0.72, 0.85, 1), 130, shape="RECTANGLE", size=1.6, size_y=1.2)
-        place("Skylight", sky, None, (0, y, HEIGHT + 0.6), (0, 0, 0)).visible_camera = False
+        sky_panel("Skylight", (0.72, 0.85, 1), 130, (1.6, 1.2), (0, y, HEIGHT + 0.6))
     camera(scene, (0.7, 0.6, 1.65), (-0.25, 9, 1.75), 22)
     textures.unwrap(scene)
     _shift(chance)

@@ -9,7 +9,7 @@ import numpy as np
 
 import textures
 from parts import aim, box, camera, glossy, light_data, place, render_settings, turned, wall
-from procedural import plastered
+from procedural import plastered, sky_panel
 
 WIDTH, DEPTH, HEIGHT = 7.0, 11.0, 4.2  # x and y from 0
 
@@ -113,10 +113,8 @@ def _lamps():
     steel = glossy("Lamp housing", (0.04, 0.04, 0.045), 0.4)
     housing = turned("Lamp housing", steel, [(0.001, 0.22), (0.10, 0.22), (0.16, -0.02)], head)
     housing.rotation_euler = [angle * 0.0174533 for angle in aim(head, target)]
-    sky = light_data("AREA", "Skylight", (0.70, 0.84, 1), 60, shape="RECTANGLE", size=0.9, size_y=0.8)
-    place("Skylight", sky, None, (4.9, 5.65, HEIGHT + 0.15)).visible_camera = False
+    sky_panel("Skylight", (0.70, 0.84, 1), 60, (0.9, 0.8), (4.9, 5.65, HEIGHT + 0.15))
     for y in (3.9, 6.9):
-        pane = light_data("AREA", "Window light", (0.70, 0.84, 1), 14, shape="RECTANGLE", size=1.1, size_y=1.5)
-        place("Window light", pane, None, (0.05, y, 2.7), aim((0, 0, 0), (1, 0, -0.35))).visible_camera = False
+        sky_panel("Window light", (0.70, 0.84, 1), 14, (1.1, 1.5), (0.05, y, 2.7), aim((0, 0, 0), (1, 0, -0.35)))
     sun = light_data("SUN", "Sun", (0.80, 0.90, 1), 18, angle=0.012)
     place("Sun", sun, None, (-4, 6, 8), aim((0, 0, 0), (0.62, -0.22, -0.80)))

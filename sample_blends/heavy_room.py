@@ -12,7 +12,7 @@ import bpy
 import textures
 from furniture import window
 from parts import aim, ball, box, camera, glossy, glowing, light_data, mesh, place, render_settings, turned, wall
-from procedural import plastered, sky_for_the_camera, wooden
+from procedural import plastered, sky_for_the_camera, sky_panel, wooden
 
 WIDTH, DEPTH, HEIGHT = 6.6, 6.0, 3.4  # x and y from 0
 
@@ -30,8 +30,7 @@ def build(scene):
     sun = light_data("SUN", "Sun", (1, 0.85, 0.66), 20, angle=0.015)
     place("Sun", sun, None, (-3, 1, 4), aim((0, 0, 0), (1, 0.30, -0.75)))
     for y in (1.5, 3.9):
-        sky = light_data("AREA", "Skylight", (0.76, 0.87, 1), 45, shape="RECTANGLE", size=1.2, size_y=2.2)
-        place("Skylight", sky, None, (0.03, y, 1.6), aim((0, 0, 0), (1, 0, -0.05))).visible_camera = False
+        sky_panel("Skylight", (0.76, 0.87, 1), 45, (1.2, 2.2), (0.03, y, 1.6), aim((0, 0, 0), (1, 0, -0.05)))
     camera(scene, (6.1, 0.35, 1.5), (2.3, 4.3, 1.25), 21)
     textures.unwrap(scene)
 

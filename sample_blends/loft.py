@@ -6,7 +6,7 @@ Hard, because bounced light must follow the bumps and the joints, and neither bl
 import textures
 from furniture import books, lamp_data, plant, sofa, table, vase, window
 from parts import aim, box, camera, glossy, light_data, place, render_settings, turned, wall
-from procedural import sky_for_the_camera
+from procedural import sky_for_the_camera, sky_panel
 
 WIDTH, DEPTH, HEIGHT = 6.4, 5.2, 3.1  # x and y from 0
 
@@ -20,9 +20,7 @@ def build(scene):
     sun = light_data("SUN", "Sun", (1, 0.86, 0.66), 22, angle=0.02)
     place("Sun", sun, None, (-3, 1, 4), aim((0, 0, 0), (1, 0.42, -0.62)))
     for y in (1.35, 3.35):
-        sky = light_data("AREA", "Skylight", (0.75, 0.87, 1), 55, shape="RECTANGLE", size=1.5, size_y=1.9)
-        panel = place("Skylight", sky, None, (0.02, y, 1.65), aim((0, 0, 0), (1, 0, -0.05)))
-        panel.visible_camera = False  # or Cycles shows it instead of the window
+        sky_panel("Skylight", (0.75, 0.87, 1), 55, (1.5, 1.9), (0.02, y, 1.65), aim((0, 0, 0), (1, 0, -0.05)))
     camera(scene, (5.9, 0.35, 1.45), (1.9, 3.9, 1.05), 22)
     textures.unwrap(scene)
 

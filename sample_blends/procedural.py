@@ -33,6 +33,13 @@ def sky_for_the_camera(scene, color, strength):
     links.new(seen.outputs[0], background.inputs["Strength"])
 
 
+def sky_panel(name, color, energy, size, location, rotation=(0, 0, 0)):
+    """An area lamp of `size` (width, height) in an opening, in place of the sky behind it, and hidden: Cycles would
+    show it instead of the opening."""
+    data = light_data("AREA", name, color, energy, shape="RECTANGLE", size=size[0], size_y=size[1])
+    place(name, data, None, location, rotation).visible_camera = False
+
+
 def plastered(name, color, bump=0.25, scale=30.0):
     """A rough surface with a bump of procedural noise, and stains of it in the colour."""
     material = glossy(name, color, 0.7)
