@@ -19,6 +19,10 @@ def box(scene, samples=4):
     # Blender 5.2.3's GPU compositor crashes in a process that composites different trees for over a minute
     # (docs/blender/rendering.md). One test uses it all the same.
     scene.render.compositor_device = "CPU"
+    # A black one is as none, but for its probe: at Blender's resolution that takes half of a small frame's time.
+    scene.world = bpy.data.worlds.new("Black")
+    scene.world.probe_resolution = "128"
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0, 0, 0, 1)
     white, red = matt("White", (0.8, 0.8, 0.8)), matt("Red", (0.8, 0.1, 0.1))
     wall(white, (0, 0, -1.5), (0, 0, 0))
     wall(white, (0, 0, 1.5), (180, 0, 0))
