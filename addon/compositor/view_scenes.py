@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The helper scenes of the views: one that places them, and one for each view, through which EEVEE renders it.
+"""The helper scenes of the views: one that places them, and one through which EEVEE renders them.
 
 Render Layers nodes at the top level of the compositor, in the order in which Blender renders their scenes:
 
     placement  our engine (render/views_engine.py): reads the finished main view, sets the cameras of the views, and
-               says which views this frame needs
-    view 1..n  EEVEE, each through its own camera (scene/view_cameras.py), with the lit scene as background set
+               says which views this frame needs. There is nothing in the scene, so it takes no time to evaluate
+    views      EEVEE, with the lit scene as background set: evaluated once, simplified, and rendered through the camera
+               of each view (scene/view_cameras.py)
     light      our engine (render/engine.py): gathers the light from the passes of all views
 
-While nothing renders, the view layers of the views are switched off. The placement engine switches on those that
-the frame needs, and leave_all_out() switches them off again: a view that is not needed costs nothing, and neither do
-the views where the extension is missing.
+While nothing renders, all views are left out. The placement engine uses those that the frame needs, and leave_all_out()
+leaves them out again: a view that is not needed costs nothing, and neither do the views where the extension is missing.
 """
 
 import bpy
@@ -19,23 +19,18 @@ import numpy as np
 from ..host import engines, roles
 from ..host.assign import assign
 from ..host.roles import SCOUT, VIEW
-from ..scene import needs, passes, roughness
-from ..translations import say
+from ..scene import needs, passes, roughness, view_cameras
 from ..views import placement
 from . import nodes, render_order
 
-PLACEMENT_NAME, VIEW_NAME = ".Afterlight Views ({})", ".Afterlight View {} ({})"
+NAMES = {SCOUT: ".Afterlight Placement ({})", VIEW: ".Afterlight Views ({})"}
 MAX_DISTANCE = 1e9  # metres of a stored pose from the world's origin
 PLACEMENT_KEY = "placed"  # custom property of the placement scene
 SAMPLES = 1  # EEVEE's samples of a view; the gather averages its pixels down anyway
+MAX_SUBDIVISIONS = 3  # of Subdivision modifiers in the views
 
 # Properties of the lit scene that affect its geometry and materials. EEVEE's own settings are all mirrored.
 _RENDER = (
-    "use_simplify",
-    "simplify_subdivision_render",
-    "simplify_child_particles_render",
-    "simplify_volumes",
-    "use_simplify_normals",
     "use_high_quality_normals",
     "frame_map_old",
     "frame_map_new",
@@ -56,7 +51,15 @@ _LAYER = (
     "use_volumes",
     "use_grease_pencil",
 )
-_EEVEE_OVERRIDES = {"taa_render_samples": SAMPLES, "use_raytracing": False, "use_overscan": False}
+_SIMPLIFY = ("simplify_child_particles_render", "simplify_volumes", "use_simplify_normals")
+# No pass that is read shows a volume, yet EEVEE renders them: as coarse as can be.
+_EEVEE_OVERRIDES = {
+    "taa_render_samples": SAMPLES,
+    "use_raytracing": False,
+    "use_overscan": False,
+    "volumetric_tile_size": "16",
+    "volumetric_samples": 1,
+}
 
 
 def placement_scene(scene):
@@ -64,9 +67,15 @@ def placement_scene(scene):
     return next((each for each in _own(scene) if each.afterlight.role == SCOUT), None)
 
 
-def scenes(scene):
-    """The scenes through which EEVEE renders the views of `scene`, in order."""
-    return [each for each in _own(scene) if each.afterlight.role == VIEW]
+def view_scene(scene):
+    """The scene through which EEVEE renders the views of `scene`, or None."""
+    return next((each for each in _own(scene) if each.afterlight.role == VIEW), None)
+
+
+def views(scene):
+    """[view_cameras.View] of `scene`, in order."""
+    rendering = view_scene(scene)
+    return view_cameras.views(rendering) if rendering else []
 
 
 def connect(scene, tree, helper):
@@ -98,42 +107,61 @@ def disconnect(scene):
 def follow(scene):
     """Bring the view scenes in line with the name and settings of `scene`."""
     mirror(scene)
-    for index, each in enumerate(_own(scene)):
-        name = _name(scene, index)
+    for each in _own(scene):
+        name = _name(scene, each.afterlight.role)
         if not each.name.startswith(name):  # Blender may have appended a number
             each.name = name
 
 
 def mirror(scene):
-    """Copy the properties of `scene` that decide how its surfaces look to its view scenes."""
+    """Copy the properties of `scene` that decide how its surfaces look to its view scene."""
+    each = view_scene(scene)
+    if each is None:
+        return
     layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
-    for each in _own(scene):
-        view_layer = each.view_layers[0]
-        for source, target, names in (
-            (scene, each, _SCENE),
-            (scene.render, each.render, _RENDER),
-            (layer, view_layer, _LAYER),
-        ):
-            for name in names:
-                assign(target, name, getattr(source, name))
-        for prop in scene.eevee.bl_rna.properties:
-            if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
-                assign(
-                    each.eevee,
-                    prop.identifier,
-                    _EEVEE_OVERRIDES.get(prop.identifier, getattr(scene.eevee, prop.identifier)),
-                )
-        assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE skips lights depending on it
-        assign(each, "background_set", scene)
-        for switch, _ in (roughness.COLOR, roughness.DIRECT):
-            assign(view_layer, switch, each.afterlight.role == VIEW and needs.glossy_light(scene))
+    view_layer = each.view_layers[0]
+    for source, target, names in (
+        (scene, each, _SCENE),
+        (scene.render, each.render, _RENDER),
+        (layer, view_layer, _LAYER),
+    ):
+        for name in names:
+            assign(target, name, getattr(source, name))
+    _simplify(scene.render, each.render)
+    for prop in scene.eevee.bl_rna.properties:
+        if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
+            assign(
+                each.eevee,
+                prop.identifier,
+                _EEVEE_OVERRIDES.get(prop.identifier, getattr(scene.eevee, prop.identifier)),
+            )
+    assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE skips lights depending on it
+    assign(each, "background_set", scene)
+    for switch, _ in (roughness.COLOR, roughness.DIRECT):
+        assign(view_layer, switch, needs.glossy_light(scene))
+
+
+def _simplify(render, of_views):
+    """Simplify the geometry of the views, and no less than the user does. render, of_views: bpy RenderSettings."""
+    prop = render.bl_rna.properties
+    for name in _SIMPLIFY:
+        assign(of_views, name, getattr(render, name) if render.use_simplify else prop[name].default)
+    users = render.simplify_subdivision_render if render.use_simplify else MAX_SUBDIVISIONS
+    assign(of_views, "simplify_subdivision_render", min(users, MAX_SUBDIVISIONS))
+    assign(of_views, "use_simplify", True)
 
 
 def is_incomplete(scene):
     """Whether any scene or node that connect() makes is missing."""
-    ours = _own(scene)
-    if len(ours) != _scene_count(scene) or any(
-        each.camera is None or each.camera != roles.camera(each) for each in ours
+    ours, placing, rendering = _own(scene), placement_scene(scene), view_scene(scene)
+    if len(ours) != _scene_count(scene):
+        return True
+    if ours and not (
+        placing is not None
+        and placing.camera is not None
+        and placing.camera == roles.camera(placing)
+        and rendering is not None
+        and view_cameras.is_set_up(rendering, needs.views(scene))
     ):
         return True
     tree = scene.compositing_node_group
@@ -144,9 +172,12 @@ def is_incomplete(scene):
 
 
 def leave_all_out():
-    """Switch off all views; the placement engine switches on those that a frame needs."""
+    """Leave out all views; the placement engine uses those that a frame needs."""
     for each in bpy.data.scenes:
         if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.lit_scene(each):
+            if each.afterlight.role == VIEW:
+                for view in view_cameras.views(each):
+                    view.use(False)
             assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
 
 
@@ -172,35 +203,16 @@ def forget_placement(scene):
 
 def prepare(scene):
     """Prepare a frame before its views are chosen: leave all views out, and mirror `scene` to them."""
-    for view in scenes(scene):
-        leave_out(view)
+    for view in views(scene):
+        view.use(False)
     mirror(scene)
 
 
-def leave_out(view):
-    """Leave a view scene out of this frame."""
-    assign(view.view_layers[0], "use", False)
-
-
 def rendered_views(scene):
-    """The view scenes that are rendered in this frame, in order."""
+    """The views that are rendered in this frame, in order."""
     tree = scene.compositing_node_group
     shown = [node.scene for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and not node.mute]
-    return [each for each in scenes(scene) if each in shown and each.view_layers[0].use]
-
-
-def unusable(camera_object):
-    """Why an object from the user's list can't be a view, as a sentence for people; empty if it can."""
-    if camera_object is None:
-        return say("A view in the list has no camera. Choose one, or remove the entry")
-    if camera_object.type != "CAMERA":
-        return say('The view "{}" is not a camera object and was left out. Choose a camera instead', camera_object.name)
-    if camera_object.data.type not in {"PERSP", "ORTHO"}:
-        return say(
-            'The view "{}" is panoramic and was left out. Set its Lens Type to Perspective or Orthographic',
-            camera_object.name,
-        )
-    return ""
+    return [each for each in views(scene) if each.scene in shown and each.is_used]
 
 
 def _checked_placement(stored):
@@ -224,7 +236,7 @@ def _checked_placement(stored):
 
 
 def _own(scene):
-    """The placement scene and the view scenes of `scene`, in order."""
+    """The placement scene and the view scene of `scene`, in order."""
     return [
         each.scene
         for each in scene.afterlight.view_scenes
@@ -235,43 +247,39 @@ def _own(scene):
 
 
 def _scene_count(scene):
-    """How many such scenes `scene` needs: one for the placement, and one for each view; 0 without views."""
-    views = needs.views(scene)
-    return views + 1 if views else 0
+    """How many such scenes `scene` needs: one that places the views, and one that renders them; 0 without views."""
+    return 2 if needs.views(scene) else 0
 
 
 def _ensure_scenes(scene):
-    """Make missing scenes and remove superfluous ones. Returns the scenes that `scene` names but that belong to
-    another: the scene that it was copied from."""
-    slots, views = scene.afterlight.view_scenes, max(_scene_count(scene) - 1, 0)
+    """Make missing scenes and remove superfluous ones: 0.3.0 made one for each view. Returns the scenes that `scene`
+    names but that belong to another: the scene that it was copied from."""
+    slots, wanted = scene.afterlight.view_scenes, (SCOUT, VIEW)[: _scene_count(scene)]
     named = [each.scene for each in slots if each.scene is not None]
-    by_role = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
-    foreign_scenes = set(named) - set(by_role[SCOUT]) - set(by_role[VIEW])
-    for role, count in ((SCOUT, 1 if views else 0), (VIEW, views)):
-        for each in by_role[role][count:]:
+    found = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
+    foreign_scenes, ours = set(named).difference(*found.values()), []
+    for role, ours_before in found.items():
+        for each in ours_before[role in wanted :]:
             roles.remove(each)
-        del by_role[role][count:]
-        new_scenes = [_new(scene, role, len(by_role[role]) + number) for number in range(count - len(by_role[role]))]
-        by_role[role] += new_scenes
-    ours = [*by_role[SCOUT], *by_role[VIEW]]
+    for role in wanted:
+        ours.append(found[role][0] if found[role] else _new(scene, role))
     if named != ours or len(slots) != len(ours):
         slots.clear()
         for each in ours:
             slots.add().scene = each
-    for each in ours:
-        roles.give_camera(each)
+    if ours:
+        placing, rendering = ours
+        roles.give_camera(placing)
+        view_cameras.set_up(rendering, needs.views(scene))
+        _follow_passes(rendering.view_layers[0])
+        assign(placing, "background_set", None)  # 0.3.0 evaluated the whole scene to place the views
     return foreign_scenes
 
 
-def _new(scene, role, index):
+def _new(scene, role):
     is_view = role == VIEW
-    scene_made = roles.new(
-        scene, role, _name(scene, index + 1 if is_view else 0), engines.EEVEE if is_view else engines.VIEWS
-    )
-    roles.give_camera(scene_made)
+    scene_made = roles.new(scene, role, _name(scene, role), engines.EEVEE if is_view else engines.VIEWS)
     layer = scene_made.view_layers[0]
-    for _, switch, _, _ in passes.PASSES:
-        setattr(layer, switch, is_view)
     # Blender 5.2 crashes in -b when the compositor asks for a scene that has never been evaluated. Evaluate it before
     # it gets a background set: a whole scene evaluated here would stay in memory.
     layer.update()
@@ -279,8 +287,15 @@ def _new(scene, role, index):
     return scene_made
 
 
-def _name(scene, index):
-    return (VIEW_NAME.format(index, scene.name) if index else PLACEMENT_NAME.format(scene.name))[:250]
+def _follow_passes(layer):
+    """Render the passes that the gather reads of a view, and no other."""
+    assign(layer, "use_pass_combined", False)
+    for _, switch, _, _ in passes.PASSES:
+        assign(layer, switch, True)
+
+
+def _name(scene, role):
+    return NAMES[role].format(scene.name)[:240]
 
 
 def _ensure_nodes(tree, ours):

@@ -6,9 +6,11 @@ helps to light), and a record (the lit scene names it, or it was ours earlier in
 remapped, a copied scene or a custom property of the same name is only a claim; such scenes belong to the user and stay
 as they are.
 
-Roles: HELPER, the scene whose engine gathers the light; SCOUT, the scene whose engine places the views; VIEW, a scene
-through which EEVEE renders one view. They are stored in files and must not change.
+Roles: HELPER, the scene whose engine gathers the light; SCOUT, the scene whose engine places the views; VIEW, the scene
+through which EEVEE renders them, each with a camera of its own. They are stored in files and must not change.
 """
+
+from itertools import count, takewhile
 
 import bpy
 
@@ -62,34 +64,58 @@ def new(lit, role, name, engine):
 def give_camera(scene):
     """Make one of our scenes use a camera of its own. Does nothing if it already does."""
     if camera(scene) is None:
-        data = bpy.data.cameras.new(scene.name)
-        camera_object = bpy.data.objects.new(scene.name, data)
-        camera_object[MARK] = data[MARK] = "camera"
-        scene.collection.objects.link(camera_object)
-        scene.afterlight.own_camera = camera_object
+        scene.afterlight.own_camera = _new_camera(scene, scene.name)
     if scene.camera != camera(scene):
         scene.camera = camera(scene)
 
 
+def give_cameras(scene, number):
+    """Make one of our scenes have `number` cameras of its own, as cameras() gives them, and use the first. Does nothing
+    if it already does."""
+    if len(cameras(scene)) == number and scene.camera == scene.afterlight.own_camera:
+        return
+    for each in {camera(scene), *cameras(scene)} - {None}:
+        _remove_camera(each)
+    name = next(
+        name
+        for name in (f"{scene.name[:240]}{index or ''}" for index in count())
+        if not any(name + suffix(index) in bpy.data.objects for index in range(number))
+    )
+    made = [_new_camera(scene, name + suffix(index)) for index in range(number)]
+    scene.afterlight.own_camera = scene.camera = made[0]
+
+
+def suffix(index):
+    """The end of the name of a camera, by its index among those of its scene: Blender's multi-view finds them by it."""
+    return f"_{index + 1}"
+
+
 def camera(scene):
-    """The camera that we made for one of our scenes; None if it was deleted or the user replaced or changed it."""
+    """The camera that we made for one of our scenes, the first of several; None if it was deleted or the user replaced
+    or changed it."""
     own_camera = scene.afterlight.own_camera
-    is_intact = _is_our_camera(own_camera) and own_camera.data.get(MARK) == "camera" and own_camera.data.users == 1
-    return own_camera if is_intact and scene in own_camera.users_scene else None
+    return own_camera if _is_intact(own_camera, scene) else None
+
+
+def cameras(scene):
+    """The cameras that give_cameras() made for one of our scenes, up to the first that was deleted or changed."""
+    first = camera(scene)
+    if first is None or not first.name.endswith(suffix(0)):
+        return []
+    named = (scene.collection.objects.get(first.name.removesuffix(suffix(0)) + suffix(index)) for index in count())
+    return list(takewhile(lambda each: _is_intact(each, scene), named))
 
 
 def remove(scene):
-    """Remove one of our scenes and its camera. A scene that holds anything of the user's is handed over to the user
+    """Remove one of our scenes and its cameras. A scene that holds anything of the user's is handed over to the user
     instead."""
-    camera_object = scene.afterlight.own_camera
-    if _holds_things_of_the_user(scene, camera_object):
+    ours = {scene.afterlight.own_camera, *cameras(scene)}
+    if _holds_things_of_the_user(scene, ours):
         _hand_over(scene)
         return
-    data = camera_object.data if _is_our_camera(camera_object) else None
-    if data is not None and len(camera_object.users_collection) < 2:
-        bpy.data.objects.remove(camera_object)
-        if data.get(MARK) == "camera" and not data.users:
-            bpy.data.cameras.remove(data)
+    for each in ours:
+        if _is_our_camera(each) and len(each.users_collection) < 2:
+            _remove_camera(each)
     bpy.data.scenes.remove(scene)
 
 
@@ -135,8 +161,33 @@ def _is_our_camera(camera_object):
     return camera_object is not None and camera_object.type == "CAMERA" and camera_object.get(MARK) == "camera"
 
 
-def _holds_things_of_the_user(scene, camera_object):
-    """Whether removing a scene would lose something of the user's."""
+def _is_intact(camera_object, scene):
+    """Whether a camera that we made for `scene` is there, and nobody has changed it."""
+    return (
+        _is_our_camera(camera_object)
+        and camera_object.data.get(MARK) == "camera"
+        and camera_object.data.users == 1
+        and scene in camera_object.users_scene
+    )
+
+
+def _new_camera(scene, name):
+    data = bpy.data.cameras.new(name)
+    camera_object = bpy.data.objects.new(name, data)
+    camera_object[MARK] = data[MARK] = "camera"
+    scene.collection.objects.link(camera_object)
+    return camera_object
+
+
+def _remove_camera(camera_object):
+    data = camera_object.data
+    bpy.data.objects.remove(camera_object)
+    if data.get(MARK) == "camera" and not data.users:
+        bpy.data.cameras.remove(data)
+
+
+def _holds_things_of_the_user(scene, ours):
+    """Whether removing a scene would lose something of the user's. ours: its cameras."""
     collections = {scene.collection, *scene.collection.children_recursive}
     all_collections = [*bpy.data.collections, *(each.collection for each in bpy.data.scenes)]
     elsewhere = {
@@ -147,7 +198,7 @@ def _holds_things_of_the_user(scene, camera_object):
         or scene.compositing_node_group
         or scene.sequence_editor
         or any(
-            thing != camera_object
+            thing not in ours
             and not (set(thing.users_collection) - collections or elsewhere.intersection(thing.users_collection))
             for thing in scene.collection.all_objects
         )

@@ -26,7 +26,7 @@ except ImportError:
 
 FOLDER_PREFIX = "afterlight_"  # names of our folders begin with it
 SESSION_PREFIX = "blender_"  # names of Blender's session folders begin with it
-FILE_NAME = re.compile(r"passes_\d+\.exr")  # names of our files
+FILE_NAME = re.compile(r"passes_\d+(_\d+)?\.exr")  # names of our files
 LOCK_NAME = ".lock"  # name of the lock file in each of our folders
 MAX_SEARCH_SECONDS = 0.005  # seconds for removing abandoned folders; the rest is left for another start
 
@@ -36,13 +36,21 @@ BY_DESCRIPTOR = {os.open, os.stat, os.unlink, os.rmdir} <= os.supports_dir_fd an
 _folders = []  # of _OwnFolder; the last one is written to. Global, as they live until Blender ends
 
 
-def new(number):
-    """The path for the passes of the scene with this session_uid; an old file there is removed. Raises OSError if no
-    folder can be written to."""
+def new(number, suffixes=("",)):
+    """The path for the passes of the scene with this session_uid. Blender writes a file for each view of a scene that
+    has several, with a suffix to its name; old files there are removed. Raises OSError if no folder can be written
+    to."""
     path = os.path.join(_folder().path, f"passes_{number}.exr")
-    with suppress(FileNotFoundError):
-        os.unlink(path)
+    for each in suffixes:
+        with suppress(FileNotFoundError):
+            os.unlink(suffixed(path, each))
     return path
+
+
+def suffixed(path, suffix):
+    """The path of a view's file, by the suffix of the view."""
+    root, ending = os.path.splitext(path)
+    return f"{root}{suffix}{ending}"
 
 
 def remove(path):

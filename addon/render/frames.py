@@ -110,20 +110,23 @@ class RenderedFrame:
         self.views = self._save_views(depsgraph, warn)
 
     def _save_views(self, depsgraph, warn):
-        found, rendered, reuse = [], view_scenes.rendered_views(self.scene), self._job.reuse
-        for view in view_scenes.scenes(self.scene):
+        reuse, found, saved = self._job.reuse, [], {}
+        if rendered := view_scenes.rendered_views(self.scene):
+            try:
+                saved = frame_store.save_views(rendered[0].scene, [view.suffix for view in rendered])
+            except Problem as problem:
+                saved = {view.suffix: problem for view in rendered}
+        for view in view_scenes.views(self.scene):
+            path = saved.get(view.suffix)
             if known := reuse.recalled(view):
                 found.append(known)
-            elif view in rendered:
-                try:
-                    path = frame_store.save(view)
-                except Problem as problem:
-                    warn(say("A view could not be used: {}", say(*problem.args)))
-                    continue
-                camera = view_cameras.camera(view, depsgraph, self.scene)
-                found.append(SavedView(path, view.view_layers[0].name, cameras.window(self.scene)[0], camera))
+            elif isinstance(path, Problem):
+                warn(say("A view could not be used: {}", say(*path.args)))
+            elif path:
+                camera, layer = view_cameras.camera(view, depsgraph, self.scene), view.scene.view_layers[0].name
+                found.append(SavedView(path, layer, cameras.window(self.scene)[0], camera))
                 reuse.remember(view, view_cameras.view_state(view, self.scene), found[-1])
-            self._job.hold_views(self.scene, self.path, found)
+        self._job.hold_views(self.scene, self.path, found)
         reuse.end_frame(found)
         return tuple(found)
 

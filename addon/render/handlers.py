@@ -9,7 +9,7 @@ from ..diagnosis import checks
 from ..host import events, main_thread, render_lock, report, roles, temp_files
 from ..scene import frame_store
 from ..translations import say
-from . import frames, relight
+from . import evaluated, frames, relight
 from . import job as jobs
 
 
@@ -91,6 +91,21 @@ def _begin(job, scene):
 
 
 @persistent
+def before_frame(*_):
+    """A frame of a render begins, before anything of it is evaluated."""
+    if job := jobs.under_way():
+        job.evaluated.begin_frame()
+
+
+@persistent
+def after_evaluation(scene, depsgraph):
+    """Blender has evaluated a scene at a frame, for a render or for a window."""
+    job = jobs.under_way()
+    if job and depsgraph.mode == "RENDER" and job.renders(scene) and not job.replayed and evaluated.is_wanted(scene):
+        job.evaluated.read(scene, depsgraph)
+
+
+@persistent
 def after_render(*_):
     """Complete or cancelled."""
     job = jobs.end()
@@ -148,6 +163,8 @@ HANDLERS = (
     ("redo_post", follow_all),
     ("save_pre", follow_all),
     ("render_init", before_render),
+    ("render_pre", before_frame),
+    ("frame_change_post", after_evaluation),
     ("render_complete", after_render),
     ("render_cancel", after_render),
 )

@@ -10,7 +10,7 @@ import os
 import time
 
 from ..scene import frame_store
-from . import frames, histories, view_reuse
+from . import evaluated, frames, histories, view_reuse
 
 
 class Job:
@@ -21,6 +21,7 @@ class Job:
     def __init__(self, scene, replayed=None):
         self.scene, self.replayed = scene.session_uid, replayed
         self.histories = histories.Histories(scene.frame_current)
+        self.evaluated = evaluated.EvaluatedScene()
         self.reuse = view_reuse.ViewReuse(("views", id(self)))
         self.worlds = {}  # world_light.read()'s: pictures may change until the next render
         self.muted = []  # (tree, node) by their names: kept out of a render that can't be lit
@@ -86,6 +87,11 @@ def current(scene):
     """The Job that goes on. One that is made up where Blender never said that a render of `scene` began: the extension
     was switched on in the midst of it."""
     return _jobs[-1] if _jobs else begin(scene)
+
+
+def under_way():
+    """The Job that goes on, or None."""
+    return _jobs[-1] if _jobs else None
 
 
 def end():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine of the scene that comes before the views: Blender calls it when EEVEE has finished the lit scene, and
-what it does to the cameras of the views holds for the same frame."""
+what it does to the cameras of the views holds for the same frame. What it needs of the scene evaluated.py has read."""
 
 import time
 
@@ -12,7 +12,7 @@ from ..diagnosis import checks
 from ..host import engines, main_thread, report, roles
 from ..scene import cameras, passes, view_cameras
 from ..translations import say
-from ..views import main_view, placement, ray_cast
+from ..views import main_view, placement
 from . import job as jobs
 
 
@@ -40,18 +40,19 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
         job.views_placed(scene, time.perf_counter() - start)
 
     def _place(self, job, scene, depsgraph):
-        start = time.perf_counter()
-        camera = cameras.camera(scene.camera.evaluated_get(depsgraph), depsgraph, scene)
+        start, evaluated = time.perf_counter(), job.evaluated
+        if evaluated.error:
+            raise evaluated.error
         by_hand = scene.afterlight.views == "MANUAL"
         if by_hand:
-            main_thread.run(lambda: self._pose_by_hand(scene, depsgraph))
-        geometry = ray_cast.Geometry(depsgraph)
+            main_thread.run(lambda: self._pose_by_hand(scene, evaluated))
         layer = cameras.first_layer(scene)
         frame = passes.load(job.passes_file(scene), layer.name, cameras.window(scene)[0])
-        main, rng = main_view.MainView(scene, layer, frame, camera), np.random.default_rng(scene.afterlight.seed)
+        main = main_view.MainView(scene, layer, frame, evaluated.camera)
+        rng, cast = np.random.default_rng(scene.afterlight.seed), evaluated.geometry.cast
 
         def look(count):
-            return main.trace_paths(count, geometry, rng, scene.afterlight.bounces)
+            return main.trace_paths(count, evaluated.geometry, rng, scene.afterlight.bounces)
 
         paths, seen = look(placement.SCORING_PATHS)
         if paths is None:
@@ -59,34 +60,32 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
                 self._warn(scene, say("No views were placed, because no surface adds light to what the camera sees"))
             return
         if by_hand:
-            shares = self._score(scene, depsgraph, paths, seen, geometry.cast)
+            shares = self._score(scene, depsgraph, paths, seen, cast)
         else:
-            shares = self._choose(scene, depsgraph, paths, seen, geometry.cast, look, rng)
-        main_thread.run(lambda: self._leave_out_still(job, scene, depsgraph))
+            shares = self._choose(scene, paths, seen, cast, look, rng)
+        if evaluated.is_still:
+            main_thread.run(lambda: self._leave_out_still(job, scene))
         report.keep_coverage(scene, shares, time.perf_counter() - start)
 
-    def _leave_out_still(self, job, scene, depsgraph):
+    def _leave_out_still(self, job, scene):
         """Of the posed views, drop those that would see what they saw in the frame before."""
         for view in view_scenes.rendered_views(scene):
-            if job.reuse.recall(scene, depsgraph, view, view_cameras.view_state(view, scene)):
-                view_scenes.leave_out(view)
+            if job.reuse.recall(view, view_cameras.view_state(view, scene)):
+                view.use(False)
 
-    def _pose_by_hand(self, scene, depsgraph):
-        for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
-            if problem := view_scenes.unusable(each.camera):
-                self._warn(scene, problem)
+    def _pose_by_hand(self, scene, evaluated):
+        for view, each, found in zip(view_scenes.views(scene), scene.afterlight.view_cameras, evaluated.by_hand):
+            if found is None:
+                self._warn(scene, view_cameras.unusable(each.camera))
             else:
-                evaluated = each.camera.evaluated_get(depsgraph)
-                view_cameras.pose(
-                    view, scene, evaluated.matrix_world, view_cameras.lens_of(evaluated, depsgraph, scene)
-                )
+                view_cameras.pose(view, scene, *found)
 
     def _score(self, scene, depsgraph, paths, seen, cast):
         """What the user's own views see: the shares of light as report.keep_coverage() wants them. Useless views are
         left out."""
         shares = [paths.arriving_share(seen)]
-        for view, each in zip(view_scenes.scenes(scene), scene.afterlight.view_cameras):
-            if not view.view_layers[0].use:
+        for view, each in zip(view_scenes.views(scene), scene.afterlight.view_cameras):
+            if not view.is_used:
                 continue
             camera = view_cameras.camera(view, depsgraph, scene)
             frame = cameras.window(scene)[0][2:]
@@ -104,13 +103,13 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
                         each.camera.name,
                     ),
                 )
-                main_thread.run(lambda view=view: view_scenes.leave_out(view))
+                main_thread.run(lambda view=view: view.use(False))
                 continue
             seen = seen | saw
             shares.append(paths.arriving_share(seen))
         return shares
 
-    def _choose(self, scene, depsgraph, paths, seen, cast, look, rng):
+    def _choose(self, scene, paths, seen, cast, look, rng):
         """Pose the views where they were, as long as they see what they saw, else anew. Returns what _score() does."""
         half_field, count = view_cameras.HALF_FIELD, scene.afterlight.view_count
         placed = view_scenes.stored_placement(scene)
@@ -130,12 +129,11 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
             main_thread.run(lambda: view_scenes.store_placement(scene, placed))
             if not poses and shares[0] < 1 - placement.MAX_COVERAGE_LOSS:
                 self._warn(scene, say("No views were placed, because no free position shows more than the camera does"))
-        far = max(scene.camera.evaluated_get(depsgraph).data.clip_end, 100 * paths.size)
+        far = max(scene.camera.data.clip_end, 100 * paths.size)
         lens = view_cameras.wide_lens(scene, placed.clearance / 4, far)
         main_thread.run(
             lambda: [
-                view_cameras.pose(view, scene, pose, lens)
-                for view, pose in zip(view_scenes.scenes(scene), placed.poses)
+                view_cameras.pose(view, scene, pose, lens) for view, pose in zip(view_scenes.views(scene), placed.poses)
             ]
         )
         return shares

@@ -35,6 +35,11 @@ def triple(
     return first, second, third
 
 
+def check(path: str) -> None:
+    """Raise Problem if a file that frame_store.py wrote is not whole."""
+    _channels(path)
+
+
 def contents(path: str, layers: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
     """{view layer: [(pass, its channels in Blender's order)]} of a file that frame_store.save() wrote."""
     channels_of: dict[str, dict[str, list[str]]] = {}

@@ -17,7 +17,7 @@ import bpy
 
 from ..host import main_thread, put_back, temp_files
 from ..host.report import Problem
-from .exr import one_line
+from .exr import check, one_line
 
 _holders: dict[str, set[Hashable]] = {}  # {path: holders}; global, since frames are kept from one render to the next
 
@@ -28,8 +28,35 @@ def save(scene: bpy.types.Scene) -> str:
     This is the only way to get the pixels of a render out of Blender in Python; an uncompressed multilayer EXR takes
     a tenth of a second at 1280 x 720. Raises Problem if it can't be written, gather.Cancelled if the render is to
     stop."""
+    path, why = _write(scene, ("",))
+    if why or not os.path.exists(path):
+        discard(path)
+        raise _not_written(why or "there is no file")
+    return path
+
+
+def save_views(scene: bpy.types.Scene, suffixes: Collection[str]) -> dict[str, str | Problem]:
+    """Write the finished passes of the views of a view scene, by the suffixes of those that were rendered, to a file
+    each: {suffix: its path, or why there is none}. Raises as save() does."""
+    path, why = _write(scene, suffixes)
+    found: dict[str, str | Problem] = {}
+    for suffix in suffixes:
+        found[suffix] = view_path = temp_files.suffixed(path, suffix)
+        try:
+            # With several views Blender says that no file could be saved, whether they were or not.
+            if not os.path.exists(view_path):
+                raise _not_written(why or "there is no file")
+            check(view_path)
+        except Problem as problem:
+            discard(view_path)
+            found[suffix] = problem
+    return found
+
+
+def _write(scene, suffixes):
+    """Have Blender write the finished passes of a scene. Returns the path, and why it says that it failed."""
     try:
-        path = temp_files.new(scene.session_uid)
+        path = temp_files.new(scene.session_uid, suffixes)
     except OSError as error:
         raise _not_written(one_line(error)) from error
     # Blender takes the file format from the scene itself; no copy of its settings can be passed.
@@ -39,18 +66,15 @@ def save(scene: bpy.types.Scene) -> str:
             raise RuntimeError("it does not have any image data")
         image.save_render(path, scene=scene)
     except (RuntimeError, OSError) as error:
-        discard(path)
         if "does not have any image data" in str(error):
             raise Problem(
                 'There is no render of "{}". Render that scene instead of its helper scene',
                 scene.name,
             ) from error
-        raise _not_written(one_line(error)) from error
+        return path, one_line(error)
     finally:
         main_thread.must_run(lambda: put_back.restore(settings))
-    if not os.path.exists(path):
-        raise _not_written("there is no file")
-    return path
+    return path, ""
 
 
 def hold(holder: Hashable, paths: Collection[str]) -> None:

@@ -17,7 +17,7 @@ from .operators import OnEditableScene
 
 class AFTERLIGHT_UL_views(UIList):
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property):
-        problem = view_scenes.unusable(item.camera)
+        problem = view_cameras.unusable(item.camera)
         layout.prop(item, "camera", text="", emboss=False, icon="ERROR" if problem else "CAMERA_DATA")
 
 

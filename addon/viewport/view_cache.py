@@ -115,7 +115,7 @@ def _matrices(viewport):
         cameras = [
             each.camera.evaluated_get(viewport.depsgraph)
             for each in settings.view_cameras
-            if each.camera and not view_scenes.unusable(each.camera)
+            if each.camera and not view_cameras.unusable(each.camera)
         ][: needs.MAX_VIEWS]
         poses_and_lenses = [
             (np.array(camera.matrix_world.normalized()), view_cameras.lens_of(camera, viewport.depsgraph, scene))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rays through the evaluated scene of a render, and a rough estimate of the light on what they hit.
 
-Only an evaluated depsgraph of our own may be used during a render: Blender's Scene.ray_cast() uses that of the window,
-and leaves out the scene behind a background set. So all meshes are read (meshes.py), simplified if they are many or
+Only the depsgraph of the render itself may be used during a render, and only while it is being evaluated, and Blender's
+Scene.ray_cast() uses that of the window. So all meshes are read (meshes.py), simplified if they are many or
 heavy (proxy_mesh.py), and put into one BVH tree: a ray is one call, however much is in the scene.
 """
 
@@ -18,8 +18,7 @@ MAX_LAMPS = 8  # lamps sampled at each call of direct_light() if there are more
 
 
 class Geometry:
-    """Everything in a depsgraph that a ray can hit, and the lamps. It must not outlive the render() that the depsgraph
-    was passed to."""
+    """Everything in a depsgraph that a ray can hit, and the lamps. It may outlive the depsgraph."""
 
     def __init__(self, depsgraph):
         scene_meshes = meshes.read(depsgraph)
@@ -55,14 +54,15 @@ class Lamp:
     """A light object, treated as a point (a sun: as a direction)."""
 
     def __init__(self, data, matrix):
-        self._data, self._matrix = data, matrix
+        self._type, self._matrix = data.type, matrix
+        self._power = max(data.color) * data.energy * 2**data.exposure
+        self._least_cosine = np.cos(data.spot_size / 2) if data.type == "SPOT" else -1.0
 
     def illuminate(self, positions, normals):
         """(radiance of a white diffuse surface without shadow (N,), directions to the lamp (N, 3), distances (N,))."""
-        data, axis = self._data, self._matrix[:3, 2]
+        axis, power = self._matrix[:3, 2], self._power
         axis = axis / (np.linalg.norm(axis) or 1)  # lamps emit along their own -Z
-        power = max(data.color) * data.energy * 2**data.exposure
-        if data.type == "SUN":
+        if self._type == "SUN":
             to_lamp, distance = np.broadcast_to(axis, positions.shape), np.full(len(positions), np.inf)
             radiance = np.full(len(positions), power / np.pi)
         else:
@@ -72,9 +72,9 @@ class Lamp:
             facing = np.clip(to_lamp @ axis, 0, None)
             share = (
                 facing / np.pi**2
-                if data.type == "AREA"
-                else np.where(facing > np.cos(data.spot_size / 2), 1, 0) / (4 * np.pi**2)
-                if data.type == "SPOT"
+                if self._type == "AREA"
+                else np.where(facing > self._least_cosine, 1, 0) / (4 * np.pi**2)
+                if self._type == "SPOT"
                 else 1 / (4 * np.pi**2)
             )
             radiance = power * share / distance**2

@@ -207,10 +207,9 @@ def test_views_show_gloss_where_it_is_wanted(scene, addon):
     scene.afterlight.views, scene.afterlight.view_count, scene.afterlight.enabled = "AUTOMATIC", 2, True
     for wanted in (False, True, False):
         scene.afterlight.use_glossy = wanted
-        layers = [view.view_layers[0] for view in addon.compositor.view_scenes.scenes(scene)]
-        assert len(layers) == 2
-        assert all(layer.use_pass_glossy_color == layer.use_pass_glossy_direct == wanted for layer in layers)
-        assert not any(layer.use_pass_cryptomatte_material for layer in layers)
+        layer = addon.compositor.view_scenes.view_scene(scene).view_layers[0]
+        assert layer.use_pass_glossy_color == layer.use_pass_glossy_direct == wanted
+        assert not layer.use_pass_cryptomatte_material
 
 
 def test_a_pass_in_use_stays_on(scene):
