@@ -19,7 +19,7 @@ import numpy as np
 from . import device, glossy
 from .device import Texture
 from .records import Records, build_records, specular_emitters
-from .shader_interface import EMITTER_TABLE_WIDTH, LIGHT_CHANNELS, RECORDS_WIDTH, SQUARE
+from .shader_interface import EMITTER_TABLE_WIDTH, LIGHT_CHANNELS, RECORDS_WIDTH, SQUARE, STRIP
 from .stages import (
     Progress,
     Pyramid,
@@ -186,21 +186,31 @@ def _radiate(name: str, textures: dict[str, Texture], table: np.ndarray) -> Text
     return radiance
 
 
-def emitter_table(radiance: Texture, table: np.ndarray, seed: int) -> tuple[Texture, dict[str, np.float32]]:
-    """(the table that emitters are sampled from, each in proportion to its share of all power and of all area; the
-    options of the passes "sample_..." from which they compute its pdf)."""
-    light = device.read(radiance).reshape(-1, 4)[: count_of(table, "emitters")].astype(np.float64)
-    area, world = light[:, 3], world_power(table)
-    power = np.abs(light[:, :3]).sum(-1) + world
-    whole, bright = area.sum(), (power * area).sum()
-    by_area = BY_AREA if bright > 0 else 1.0
-    power_pdf = np.float32((1 - by_area) / bright if bright > 0 else 0.0)
-    area_pdf = np.float32(by_area / whole if whole > 0 else 0.0)
-    shares = np.cumsum((power_pdf * power + area_pdf) * area)
-    at = (np.arange(ENTRIES) + np.random.default_rng(seed & 0xFFFFFFFF).random(ENTRIES)) / ENTRIES * shares[-1]
-    numbers = np.minimum(np.searchsorted(shares, at), len(shares) - 1).astype(np.float32)
-    entries = device.texture(EMITTER_TABLE_WIDTH, ENTRIES // EMITTER_TABLE_WIDTH, "R32F", numbers)
-    return entries, {"power_pdf": power_pdf, "area_pdf": area_pdf, "world_power": world}
+def emitter_table(radiance: Texture, table: np.ndarray, seed: int) -> dict[str, Texture]:
+    """The table that emitters are sampled from, each in proportion to its share of all power and of all area, and
+    "starts", from which the passes "sample_..." have its pdf."""
+    rows, count, entries = rows_of(table, "emitters"), count_of(table, "emitters"), ENTRIES
+    sums, starts = device.texture(RECORDS_WIDTH, rows, "RG32F"), device.texture(rows, 1)
+    made = device.texture(EMITTER_TABLE_WIDTH, entries // EMITTER_TABLE_WIDTH, "R32F")
+    by_row = device.groups(rows, 1, STRIP)
+    device.dispatch(
+        "row_sums",
+        {"radiance": radiance, "sums_out": sums},
+        by_row,
+        views=table,
+        count=count,
+        world_power=world_power(table),
+    )
+    device.dispatch("row_starts", {"sums": sums, "starts_out": starts}, by_row, entries=entries, by_area=BY_AREA)
+    device.dispatch(
+        "table",
+        {"sums": sums, "starts": starts, "table_out": made},
+        device.groups(made.width, made.height),
+        count=count,
+        entries=entries,
+        seed=seed & 0xFFFFFFFF,
+    )
+    return {"table": made, "starts": starts}
 
 
 def sample_emitters(
@@ -215,11 +225,11 @@ def sample_emitters(
 ) -> None:
     """Gather into `target` by one of the passes "sample_...". radiance: of the emitters. receivers: the texture that
     holds them."""
-    entries, pdf = emitter_table(radiance, records.table, settings.seed)
+    sampled = emitter_table(radiance, records.table, settings.seed)
     run_in_bands(
         name,
         SQUARE[0] * SQUARE[1] * settings.groups * settings.candidates,
-        receivers | {"emitters": records.emitters, "radiance": radiance, "table": entries, "depths": records.depths},
+        receivers | sampled | {"emitters": records.emitters, "radiance": radiance, "depths": records.depths},
         target,
         after_band,
         views=records.table,
@@ -228,6 +238,6 @@ def sample_emitters(
         candidates=settings.candidates,
         entries=ENTRIES,
         shadow_steps=SHADOW_STEPS if settings.visibility else 0,
-        **pdf,
+        world_power=world_power(records.table),
         **named,
     )

@@ -98,16 +98,17 @@ BAND = (
     Field("first_row", "int", "of the target, where this dispatch begins"),
     Field("first_column", "int", "of the target, where this dispatch begins"),
 )
+EMITTERS = Field("count", "int", "of emitters")
+ENTRIES = Field("entries", "int", "of the table of emitters")
+WORLD_POWER = Field("world_power", "float", "sum of the world light's mean radiance over r, g, b")
 SAMPLING = (
     *BAND,
     SEED,
     Field("groups", "int", "of candidates, for each receiver"),
     Field("candidates", "int", "in a group"),
-    Field("entries", "int", "of the table of emitters"),
+    ENTRIES,
     Field("shadow_steps", "int", "along a shadow ray; 0: nothing hides anything"),
-    Field("power_pdf", "float", "an emitter of the table has the pdf area * (power_pdf (power + world_power)"),
-    Field("area_pdf", "float", "+ area_pdf)"),
-    Field("world_power", "float", "sum of the world light's mean radiance over r, g, b"),
+    WORLD_POWER,
 )
 STRENGTH = Field("strength", "float", "factor on the light that is added to the picture")
 DEPTH_AXIS = Field("depth_axis", "vec4", "depth of a world position p, m, is -dot(depth_axis, (p, 1))")
@@ -231,15 +232,37 @@ PASSES = {
         "radiance_out",
         defines={"ADDS_DIFFUSE": "1"},
     ),
+    "row_sums": Pass(
+        ("radiosity/views", "radiosity/row_sums"),
+        ("radiance",),
+        "sums_out",
+        (EMITTERS, WORLD_POWER),
+        STRIP,
+        format="RG32F",
+    ),
+    "row_starts": Pass(
+        ("radiosity/row_starts",),
+        ("sums",),
+        "starts_out",
+        (ENTRIES, Field("by_area", "float", "share of the table in proportion to area, the rest to power")),
+        STRIP,
+    ),
+    "table": Pass(
+        ("common/random", "radiosity/table"),
+        ("sums", "starts"),
+        "table_out",
+        (EMITTERS, ENTRIES, SEED),
+        format="R32F",
+    ),
     "sample_blocks": Pass(
         (*_VIEWS, *_SAMPLE, "radiosity/receiver_block", "radiosity/sample_emitters"),
-        ("receivers", "emitters", "radiance", "table", "depths"),
+        ("receivers", "emitters", "radiance", "table", "starts", "depths"),
         "irradiance_out",
         SAMPLING,
     ),
     "sample_base": Pass(
         (*_SURFEL, *_VIEWS, *_SAMPLE, "radiosity/receiver_base", "radiosity/sample_emitters"),
-        ("surfels", "emitters", "radiance", "table", "depths"),
+        ("surfels", "emitters", "radiance", "table", "starts", "depths"),
         "irradiance_out",
         SAMPLING,
     ),

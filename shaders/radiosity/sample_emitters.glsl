@@ -15,11 +15,6 @@
 #define NEAR_RINGS 32         // of emitters around the receiver; the pdf of ring k is proportional to log(1 + 1 / k)
 #define NEAR_SHARE 4          // of 16 candidates come from them
 
-float power_of(vec3 radiance)
-{
-  return abs(radiance.r) + abs(radiance.g) + abs(radiance.b);
-}
-
 // Pdf of each of the 8 k emitters on the square ring k.
 float ring_pdf(int k)
 {
@@ -56,6 +51,7 @@ void main()
     }
     int near_candidates = near_count > 0 ? candidates * NEAR_SHARE / 16 : 0;
     int table_candidates = candidates - near_candidates;
+    vec2 pdfs = texelFetch(starts, ivec2(0), 0).ba;
     for (int group = 0; group < groups; group++) {
       float total = 0.0, weight = 0.0;
       vec3 light = vec3(0.0), from = vec3(0.0);
@@ -94,7 +90,7 @@ void main()
           continue;
         }
         float pdf = float(table_candidates) *
-                    (options.power_pdf * (power_of(sent.rgb) + options.world_power) + options.area_pdf) * first.a;
+                    dot(pdfs, vec2(power_of(sent.rgb) + options.world_power, 1.0)) * first.a;
         if (near_candidates > 0 && (near_views >> view & 1u) != 0u) {
           Grid grid = views.cameras[view].emitters;
           int within = number - grid.first;

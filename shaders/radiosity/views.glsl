@@ -83,6 +83,12 @@ float shown_area(int view, vec3 position, vec3 normal, float depth)
              depth * depth * footprint * depth * inversesqrt(max(dot(outgoing, outgoing), 1e-37)) / cosine;
 }
 
+// What emitters are sampled by, beside their area.
+float power_of(vec3 radiance)
+{
+  return abs(radiance.r) + abs(radiance.g) + abs(radiance.b);
+}
+
 // EEVEE's world light on a white surface, as radiance: spherical harmonics up to the first order, unoccluded.
 vec3 world_light(vec3 normal)
 {
