@@ -5,6 +5,8 @@ Blender gives the evaluated scene of a render to its engine, and to handlers of 
 soon as the scene is evaluated. So the views can be placed, when the scene is rendered, without evaluating it again.
 """
 
+import time
+
 import bpy
 
 from ..host import roles
@@ -15,11 +17,12 @@ from ..views import ray_cast
 class EvaluatedScene:
     """A lit scene in one render job, frame by frame. camera: gather.Camera of its first view layer. geometry:
     ray_cast.Geometry. by_hand: [(matrix, view_cameras.Lens) or None], of the user's own views. is_still: whether
-    nothing but cameras moves from frame to frame. error: the exception that kept it from being read, or None."""
+    nothing but cameras moves from frame to frame. error: the exception that kept it from being read, or None. seconds:
+    that reading it took in this frame."""
 
     def __init__(self):
         self.camera = self.geometry = self.error = None
-        self.by_hand, self.is_still = [], False
+        self.by_hand, self.is_still, self.seconds = [], False, 0.0
         self._frames, self._is_read = 0, False
 
     def begin_frame(self):
@@ -31,11 +34,12 @@ class EvaluatedScene:
         vectors it evaluates other times as well, and every view layer again."""
         if self._is_read:
             return
-        self._is_read, self.error = True, None
+        start, self._is_read, self.error = time.perf_counter(), True, None
         try:
             self._read(scene, depsgraph)
         except Exception as error:  # a handler must not fail; the engine that places the views says it
             self.error = error
+        self.seconds = time.perf_counter() - start
 
     def _read(self, scene, depsgraph):
         self._frames += 1

@@ -37,7 +37,7 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
             if job.replayed or any(finding.fatal for finding in checks.findings(scene)):
                 return
             self._place(job, scene, depsgraph)
-        job.views_placed(scene, time.perf_counter() - start)
+        job.views_placed(scene, time.perf_counter() - start + job.evaluated.seconds)
 
     def _place(self, job, scene, depsgraph):
         start, evaluated = time.perf_counter(), job.evaluated
@@ -65,7 +65,7 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
             shares = self._choose(scene, paths, seen, cast, look, rng)
         if evaluated.is_still:
             main_thread.run(lambda: self._leave_out_still(job, scene))
-        report.keep_coverage(scene, shares, time.perf_counter() - start)
+        report.keep_coverage(scene, shares, time.perf_counter() - start + evaluated.seconds)
 
     def _leave_out_still(self, job, scene):
         """Of the posed views, drop those that would see what they saw in the frame before."""

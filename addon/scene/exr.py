@@ -70,12 +70,13 @@ def _channels(path):
         ) from error
     try:
         temp_files.check_regular(path)
-        channels = _mapped(path, OpenEXR.File(path, separate_channels=True, header_only=True).header())
+        header = OpenEXR.File(path, separate_channels=True, header_only=True).header()
+        channels = _mapped(path, header)
         if channels is None:
             parts = OpenEXR.File(path, separate_channels=True).parts
             channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
-        if not channels:  # OpenEXR only prints the reason
-            raise EOFError("it holds no whole pass")
+        if not channels or not {channel.name for channel in header["channels"]} <= channels.keys():
+            raise EOFError("not all passes are whole")  # OpenEXR only prints the reason
         return channels
     except Exception as error:  # OpenEXR raises bare RuntimeError, ValueError and its own for a truncated file
         raise Problem(

@@ -128,30 +128,43 @@ def animation(scene, folder):
 
 @pytest.fixture
 def rendered(afterlight, monkeypatch):
-    """The names of the scenes whose passes were saved."""
-    names, save = [], afterlight.addon.scene.frame_store.save
+    """The suffixes of the views whose passes were saved."""
+    suffixes, save = [], afterlight.addon.scene.frame_store.save_views
 
-    def spy(scene):
-        names.append(scene.name)
-        return save(scene)
+    def spy(scene, wanted):
+        suffixes.extend(wanted)
+        return save(scene, wanted)
 
-    monkeypatch.setattr(afterlight.addon.scene.frame_store, "save", spy)
-    return names
+    monkeypatch.setattr(afterlight.addon.scene.frame_store, "save_views", spy)
+    return suffixes
 
 
-def views_among(names):
-    return sum(name.startswith(".Afterlight View") for name in names)
+@pytest.fixture
+def evaluations(afterlight):
+    """The role of each scene whose geometry Blender has evaluated for a render, "" for the user's."""
+    roles = []
+
+    def on_evaluated(scene, depsgraph):
+        if depsgraph.mode == "RENDER" and any(
+            update.is_updated_geometry and getattr(update.id, "type", "") == "MESH" for update in depsgraph.updates
+        ):
+            roles.append(scene.afterlight.role)
+
+    on_evaluated.__module__ = f"{afterlight.addon.__name__}.test"  # another's could move anything
+    bpy.app.handlers.frame_change_post.append(on_evaluated)
+    yield roles
+    bpy.app.handlers.frame_change_post.remove(on_evaluated)
 
 
 def test_views_are_rendered_once_while_only_the_camera_moves(scene, scene_animation, rendered, monkeypatch, tmp_path):
     scene.afterlight.enabled = True
     keyed(scene.camera)
     kept = animation(scene, tmp_path / "kept")
-    assert views_among(rendered) == 2
+    assert rendered == ["_1", "_2"]
     rendered.clear()
     monkeypatch.setattr(scene_animation, "find_motion", lambda *_: "everything")
     anew = animation(scene, tmp_path / "anew")
-    assert views_among(rendered) == 6
+    assert rendered == ["_1", "_2"] * 3
     for one, other in zip(kept, anew):
         assert all(np.array_equal(one[name], other[name]) for name in other)
     assert np.abs(kept[0]["R"] - kept[2]["R"]).max() > 0.01  # the camera did move
@@ -161,7 +174,7 @@ def test_views_are_rendered_in_every_frame_where_the_lamp_moves(scene, rendered,
     scene.afterlight.enabled = True
     keyed(bpy.data.objects["Lamp"])
     animation(scene, tmp_path)
-    assert views_among(rendered) == 6
+    assert rendered == ["_1", "_2"] * 3
 
 
 def test_between_two_renders_anything_may_have_changed(scene, rendered, tmp_path):
@@ -171,4 +184,22 @@ def test_between_two_renders_anything_may_have_changed(scene, rendered, tmp_path
     lamp.energy *= 2
     rendered.clear()
     animation(scene, tmp_path / "second")
-    assert views_among(rendered) == 2
+    assert rendered == ["_1", "_2"]
+
+
+def test_how_often_the_scene_is_evaluated(scene, afterlight, evaluations, tmp_path):
+    """Once for the views, placed anew or not, however many. Where only the camera moves, never: but Blender keeps one
+    evaluated scene at a time, and evaluates the lit one again since our helper scenes have come between."""
+    scene.afterlight.view_count = 5
+    scene.afterlight.views, scene.afterlight.enabled = "AUTOMATIC", True
+    for _ in ("placed anew", "kept"):
+        bpy.ops.render.render()
+        assert scene.afterlight.report == "" and evaluations == ["", "VIEW"]
+        evaluations.clear()
+    keyed(scene.camera)
+    animation(scene, tmp_path / "camera")
+    assert evaluations == ["", "VIEW", "", ""]
+    evaluations.clear()
+    keyed(bpy.data.objects["Wall"])
+    animation(scene, tmp_path / "wall")
+    assert evaluations == ["", "VIEW"] * 3
