@@ -54,7 +54,8 @@ def build_records(
             views=own,
             view=index,
         )
-        _emit(view, index, passes, channels, own, records)
+        for kind, target in records.items():
+            _emit(view, index, passes, channels, own, kind, target)
     return Records(table, depths, _shared(records["emitters"], depths, table), records["receivers"]), channels, main
 
 
@@ -76,20 +77,19 @@ def _emit(
     passes: Passes | GpuPasses,
     channels: dict[str, Texture],
     table: np.ndarray,
-    records: dict[str, Texture],
+    kind: str,
+    target: Texture,
 ) -> None:
-    """Write one view's records. records: the textures that hold those of all views, by their kinds."""
-    name = "emit_with_normals" if passes.lacks_normals() else "emit"
-    for kind, target in records.items():
-        device.dispatch(
-            name,
-            channels | {"records_out": target},
-            device.groups(*grid_of(table, kind, index)),
-            frame=frame_block(view.camera, passes.size),
-            views=table,
-            view=index,
-            receives=kind == "receivers",
-        )
+    """Write one view's records of a kind."""
+    device.dispatch(
+        "emit_with_normals" if passes.lacks_normals() else "emit",
+        channels | {"records_out": target},
+        device.groups(*grid_of(table, kind, index)),
+        frame=frame_block(view.camera, passes.size),
+        views=table,
+        view=index,
+        receives=kind == "receivers",
+    )
 
 
 def specular_emitters(views: list[View], records: Records) -> Texture:
@@ -100,5 +100,5 @@ def specular_emitters(views: list[View], records: Records) -> Texture:
     for index, view in enumerate(views):
         passes = view.load_specular()
         if passes is not None:
-            _emit(view, index, passes, upload(passes), records.table, {"emitters": target})
+            _emit(view, index, passes, upload(passes), records.table, "emitters", target)
     return _shared(target, records.depths, records.table)
