@@ -55,7 +55,7 @@ def _radiosity_bytes(
     sampling = packed + past + emitters + receivers + max(emitters, 4 * ENTRIES + starts + max(base, sums))
     averaging = packed + past + emitters + receivers + 2 * base
     steps = [
-        packed + past + LIGHT * channel + max(0, 4 * emitters - base),  # before the base, emitters were shared
+        packed + past + LIGHT * channel,
         sampling + mean + specular,
         packed + history + 3 * base,  # smoothed twice
         packed + history + 2 * base + 3 * channel,  # composited
@@ -67,7 +67,7 @@ def _radiosity_bytes(
     if shines:
         lit = packed + past + mean + specular + emitters + receivers + base
         steps += [
-            packed + past + specular + max(specular, CHANNELS * channel),
+            packed + past + specular + CHANNELS * channel,
             lit + max(emitters, 3 * base, base + 6 * channel),  # specular light added, reflected, composited
         ]
     return max(steps)

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import device
 from .device import Texture
-from .shader_interface import RECORDS_WIDTH, SURFACE_CHANNELS
+from .shader_interface import RECORDS_WIDTH
 from .stages import Report, frame_block, upload
 from .types import GpuPasses, Passes, RadiositySettings, View
 from .view_layout import KINDS, grid_of, own_table, rows_of, view_table
@@ -33,42 +33,38 @@ def build_records(
     broken: dict[str, int] | None = None,
 ) -> tuple[Records, dict[str, Texture], Passes | GpuPasses]:
     """(records of all views, channels and passes of the main view). size: (width, height) of views that are not coarse,
-    if it is not the main view's own. One view's passes are on the GPU at a time, and each is uploaded once."""
-    main = views[0].load_passes()
-    table = view_table(views, size or main.size, settings, world)
+    if it is not the main view's own. One view's passes are held at a time."""
+    passes: Passes | GpuPasses | None = views[0].load_passes()
+    assert passes is not None
+    table = view_table(views, size or passes.size, settings, world)
     width, height = (int(side) for side in table["depth_size"])
     depths = device.texture(width, height * len(views), "RG32F")
-    records = {kind: device.texture(4 * RECORDS_WIDTH, rows_of(table, kind)) for kind in KINDS}
-    channels: dict[str, Texture] = {}
-    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
-        report("views", 1 - (index + 1) / len(views))
-        view, passes = views[index], views[index].load_passes() if index else main
-        channels.clear()
-        channels = upload(passes, None if index else broken)
-        own = own_table(view, table)
+    for index, view in enumerate(views):
+        report("views", index / len(views) / 2)
+        passes = passes or view.load_passes()
         device.dispatch(
             "depths",
-            {name: channels[name] for name in SURFACE_CHANNELS} | {"depths_out": depths},
+            upload(passes, light=False) | {"depths_out": depths},
             device.groups(width, height),
             frame=frame_block(view.camera, passes.size),
-            views=own,
+            views=own_table(view, table),
             view=index,
         )
-        for kind, target in records.items():
-            _emit(view, index, passes, channels, own, kind, target)
-    return Records(table, depths, _shared(records["emitters"], depths, table), records["receivers"]), channels, main
-
-
-def _shared(emitters: Texture, depths: Texture, table: np.ndarray) -> Texture:
-    """Records of emitters of which every view has its share, of such that every view has whole."""
-    shared = device.texture(emitters.width, emitters.height)
-    device.dispatch(
-        "share",
-        {"records": emitters, "depths": depths, "emitters_out": shared},
-        device.groups(RECORDS_WIDTH, emitters.height),
-        views=table,
-    )
-    return shared
+        if index + 1 < len(views):
+            passes = None  # before the next ones are loaded
+    targets = {kind: device.texture(4 * RECORDS_WIDTH, rows_of(table, kind)) for kind in KINDS}
+    channels: dict[str, Texture] = {}
+    for index in reversed(range(len(views))):  # the main one last: its channels are needed again
+        report("views", 1 - (index + 1) / len(views) / 2)
+        channels.clear()
+        passes = passes or views[index].load_passes()
+        channels = upload(passes, None if index else broken)
+        for kind, target in targets.items():
+            _emit(views[index], index, passes, channels, depths, own_table(views[index], table), kind, target)
+        if index:
+            passes = None
+    assert passes is not None
+    return Records(table, depths, **targets), channels, passes
 
 
 def _emit(
@@ -76,6 +72,7 @@ def _emit(
     index: int,
     passes: Passes | GpuPasses,
     channels: dict[str, Texture],
+    depths: Texture,
     table: np.ndarray,
     kind: str,
     target: Texture,
@@ -83,7 +80,7 @@ def _emit(
     """Write one view's records of a kind."""
     device.dispatch(
         "emit_with_normals" if passes.lacks_normals() else "emit",
-        channels | {"records_out": target},
+        channels | {"depths": depths, "records_out": target},
         device.groups(*grid_of(table, kind, index)),
         frame=frame_block(view.camera, passes.size),
         views=table,
@@ -100,5 +97,5 @@ def specular_emitters(views: list[View], records: Records) -> Texture:
     for index, view in enumerate(views):
         passes = view.load_specular()
         if passes is not None:
-            _emit(view, index, passes, upload(passes), records.table, "emitters", target)
-    return _shared(target, records.depths, records.table)
+            _emit(view, index, passes, upload(passes), records.depths, records.table, "emitters", target)
+    return target

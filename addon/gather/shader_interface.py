@@ -173,6 +173,7 @@ SURFEL_FORMAT = "RGBA32UI"
 _SURFEL = ("common/camera", "common/surfel")
 _VIEWS = ("radiosity/views", "radiosity/visibility")
 _SAMPLE = ("radiosity/shadow_ray", "common/random", "common/form_factor")
+_EMIT_CHANNELS = (*ALL_CHANNELS, "depths")
 _EMIT = (VIEW, Field("receives", "bool", "whether receivers are made, or else emitters"))
 PASSES = {
     "pack": Pass((*_SURFEL, "common/pack"), ALL_CHANNELS, "surfels_out", group=STRIP),
@@ -217,14 +218,13 @@ PASSES = {
         (VIEW,),
         format="RG32F",
     ),
-    "emit": Pass(("common/camera", "radiosity/views", "radiosity/emit"), ALL_CHANNELS, "records_out", _EMIT),
+    "emit": Pass(("common/camera", *_VIEWS, "radiosity/emit"), _EMIT_CHANNELS, "records_out", _EMIT),
     "emit_with_normals": Pass(
-        ("common/camera", "radiosity/views", "common/geometric", "radiosity/emit"),
-        ALL_CHANNELS,
+        ("common/camera", *_VIEWS, "common/geometric", "radiosity/emit"),
+        _EMIT_CHANNELS,
         "records_out",
         _EMIT,
     ),
-    "share": Pass((*_VIEWS, "radiosity/share"), ("records", "depths"), "emitters_out"),
     "radiate": Pass(("radiosity/views", "radiosity/radiate"), ("emitters", "irradiance"), "radiance_out"),
     "radiate_specular": Pass(
         ("radiosity/views", "radiosity/radiate"),

@@ -91,14 +91,15 @@ def frame_block(
     )
 
 
-def upload(passes: Passes | GpuPasses, broken: dict[str, int] | None = None) -> dict[str, Texture]:
+def upload(passes: Passes | GpuPasses, broken: dict[str, int] | None = None, light: bool = True) -> dict[str, Texture]:
     """One texture a channel, by their names in the shaders, with four neighbouring pixels of a row in each texel; rows
-    are padded with 0. broken: filled with Passes.broken()."""
+    are padded with 0. broken: filled with Passes.broken(). light: or else only depth and normal."""
     if isinstance(passes, GpuPasses):
         return dict(passes.textures)
     channels = dict(zip(SURFACE_CHANNELS, (passes.depth, *passes.normal), strict=True))
-    channels |= zip(COLOR_CHANNELS, passes.diffuse_color, strict=True)
-    channels |= zip(LIGHT_CHANNELS, (*passes.diffuse_direct, *passes.emission), strict=True)
+    if light:
+        channels |= zip(COLOR_CHANNELS, passes.diffuse_color, strict=True)
+        channels |= zip(LIGHT_CHANNELS, (*passes.diffuse_direct, *passes.emission), strict=True)
     textures, is_sound = _textures(channels)
     if broken is not None and not is_sound:
         broken |= passes.broken()

@@ -1,18 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emit: a record for each block of one view's pixels, in world space, of four texels:
 //
-//   0  position, m; area A, m^2, to be multiplied by this view's share of it (share.glsl)
+//   0  position, m; area A, m^2, times this view's share of it
 //   1  mean normal, the shorter the less flat the block is; A
 //   2  radiance of direct light and emission, W sr^-1 m^-2
 //   3  albedo
+//
+// Views that show the same surface share it by the balance heuristic, w_k = A_k^-1 / sum_j A_j^-1 over the views j that
+// see it, with A_j the area of a pixel there: the view with the finest pixels has the largest share.
+
+// This view's share of a surface.
+float own_share(int own, vec3 position, vec3 normal, float depth)
+{
+  float mine = 1.0 / shown_area(own, position, normal, depth), all = mine;
+  vec3 outgoing = to_camera(own, position);
+  for (uint left = all_views(); left != 0u; left &= left - 1u) {
+    int view = findLSB(left);
+    vec3 projected = project(view, position);
+    float shown = view == own ? 0.0 : depth_at(view, projected);
+    if (shown > 0.0 && shows(view, position, normal, outgoing, projected, shown)) {
+      all += 1.0 / shown_area(view, position, normal, projected.z);
+    }
+  }
+  return mine / all;
+}
 
 #define PASS_PIXEL(channel) texelFetch(channel, source, 0)[pixel.x & 3]
 
 void main()
 {
   int view = options.view;
+  bool receives = options.receives != 0;
   Grid grid = views.cameras[view].emitters;
-  if (options.receives != 0) {
+  if (receives) {
     grid = views.cameras[view].receivers;
   }
   ivec2 block = ivec2(gl_GlobalInvocationID.xy);
@@ -20,7 +40,7 @@ void main()
     return;
   }
   int side = grid.side;
-  float area = 0.0;
+  float area = 0.0, own = 0.0;
   vec3 position = vec3(0.0), normal = vec3(0.0), power = vec3(0.0), albedo = vec3(0.0);
   ivec2 end = min(block * side + side, frame.size);
   for (int y = block.y * side; y < end.y; y++) {
@@ -44,17 +64,19 @@ void main()
       facing = direction(facing);
       vec3 world = to_world(view, view_position(centre, depth)) + views.cameras[view].position;
       float shown = shown_area(view, world, facing, depth);
+      float mine = receives ? shown : shown * own_share(view, world, facing, depth);
       area += shown;
-      position += shown * world;
-      normal += shown * facing;
-      power += shown * radiance;
-      albedo += shown * color;
+      own += mine;
+      position += mine * world;
+      normal += mine * facing;
+      power += mine * radiance;
+      albedo += mine * color;
     }
   }
   // shown_area() is that of a depth map's texel, which is wider than a pixel.
-  float scale = 1.0 / float(views.depth_step * views.depth_step), each = area > 0.0 ? 1.0 / area : 0.0;
+  float scale = 1.0 / float(views.depth_step * views.depth_step), each = own > 0.0 ? 1.0 / own : 0.0;
   int record = grid.first + block.y * grid.size.x + block.x;
-  imageStore(records_out, record_texel(record, 0, 4), vec4(position * each, area * scale));
+  imageStore(records_out, record_texel(record, 0, 4), vec4(position * each, own * scale));
   imageStore(records_out, record_texel(record, 1, 4), vec4(normal * each, area * scale));
   imageStore(records_out, record_texel(record, 2, 4), vec4(power * each, 0.0));
   imageStore(records_out, record_texel(record, 3, 4), vec4(albedo * each, 0.0));

@@ -156,8 +156,8 @@ def own_share(cameras, own, position, normal, depth):
 
 
 def emit(views, cameras, own, side, step, receives):
-    """(rows, columns, 4, 4): the records of one view's blocks of side x side pixels, as shaders/radiosity/emit.glsl and
-    share.glsl store them."""
+    """(rows, columns, 4, 4): the records of one view's blocks of side x side pixels, as shaders/radiosity/emit.glsl
+    stores them."""
     passes, camera, view = views[own].load_passes(), views[own].camera, cameras[own]
     depth = passes.depth[::-1].astype(np.float64)
     height, width = depth.shape
@@ -169,20 +169,16 @@ def emit(views, cameras, own, side, step, receives):
     light, color = (np.where(sound[..., None], image, 0) for image in (light, color))
     position = view_position(camera, pixel_centres(height, width), depth) @ view.rotation + view.position
     shown = np.where(sound, shown_area(view, position, normal, depth), 0)
+    mine = shown if receives else shown * own_share(cameras, own, position, normal, depth)
 
     def blocks(image):
         image = np.pad(image, [(0, -height % side), (0, -width % side)] + [(0, 0)] * (image.ndim - 2))
         return image.reshape(image.shape[0] // side, side, image.shape[1] // side, side, *image.shape[2:]).sum((1, 3))
 
-    area = blocks(shown)
-    each = np.where(area > 0, 1 / np.where(area > 0, area, 1), 0)[..., None]
-    means = [blocks(shown[..., None] * image) * each for image in (position, normal, light, color)]
-    shared = area
-    if not receives:
-        position, normal = (np.where(each > 0, mean, (0, 0, 1)) for mean in means[:2])
-        depth = np.where(area > 0, project(view, position)[..., 2], 1)
-        shared = area * np.where(area > 0, own_share(cameras, own, position, direction(normal), depth), 0)
-    last = [shared / step**2, area / step**2, 0 * area, 0 * area]
+    area = blocks(mine)
+    share = np.where(area > 0, 1 / np.where(area > 0, area, 1), 0)[..., None]
+    means = [blocks(mine[..., None] * image) * share for image in (position, normal, light, color)]
+    last = [area / step**2, blocks(shown) / step**2, 0 * area, 0 * area]
     return np.stack([np.concatenate([mean, end[..., None]], -1) for mean, end in zip(means, last)], -2)
 
 
