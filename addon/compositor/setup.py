@@ -59,7 +59,7 @@ def follow(scene):
     helper = scene.afterlight.helper
     if render_lock.is_locked() or helper is None:
         return  # the user deleted it: diagnosis/checks.py says so and offers a button
-    if lit_scene(helper) != scene:
+    if lit_scene(helper) != scene or view_scenes.is_of_0_3_0(scene):
         connect(scene)  # a copied scene still names the helper of its original
         return
     _mirror_layers(scene, helper)
@@ -142,7 +142,9 @@ def needs_rebuilding(scene):
     """Whether follow() would add or remove scenes or view layers. Blender crashes if that happens while it evaluates a
     scene."""
     helper = scene.afterlight.helper
-    return helper is not None and (lit_scene(helper) != scene or len(helper.view_layers) > len(scene.view_layers))
+    return helper is not None and (
+        lit_scene(helper) != scene or len(helper.view_layers) > len(scene.view_layers) or view_scenes.is_of_0_3_0(scene)
+    )
 
 
 def add_picture(scene):

@@ -171,6 +171,11 @@ def is_incomplete(scene):
     return shown_scenes != ours
 
 
+def is_of_0_3_0(scene):
+    """Whether the views of `scene` still have a scene each."""
+    return any(each.afterlight.role == VIEW and not each.render.use_multiview for each in _own(scene))
+
+
 def leave_all_out():
     """Leave out all views; the placement engine uses those that a frame needs."""
     for each in bpy.data.scenes:

@@ -50,9 +50,9 @@ def _radiosity_bytes(
     history = base if averages else 0
     mean = base if settings.gathers > 1 else 0
     specular = 4 * emitters if shines else 0
-    # The gathers: radiance and irradiance, then a bounce, or the table of emitters and the base, or its sums.
-    starts, sums = TEXEL * rows_of(table, "emitters"), emitters // 2
-    sampling = packed + past + emitters + receivers + max(emitters, 4 * ENTRIES + starts + max(base, sums))
+    # The gathers: radiance and irradiance, then a bounce, or the base and the table of emitters with its sums.
+    sums = emitters // 2 + TEXEL * rows_of(table, "emitters")
+    sampling = packed + past + emitters + receivers + max(emitters, 4 * ENTRIES + sums + base)
     averaging = packed + past + emitters + receivers + 2 * base
     steps = [
         packed + past + LIGHT * channel,

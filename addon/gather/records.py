@@ -59,8 +59,7 @@ def build_records(
         channels.clear()
         passes = passes or views[index].load_passes()
         channels = upload(passes, None if index else broken)
-        for kind, target in targets.items():
-            _emit(views[index], index, passes, channels, depths, own_table(views[index], table), kind, target)
+        _emit(views[index], index, passes, channels | {"depths": depths}, own_table(views[index], table), targets)
         if index:
             passes = None
     assert passes is not None
@@ -71,22 +70,23 @@ def _emit(
     view: View,
     index: int,
     passes: Passes | GpuPasses,
-    channels: dict[str, Texture],
-    depths: Texture,
+    textures: dict[str, Texture],
     table: np.ndarray,
-    kind: str,
-    target: Texture,
+    targets: dict[str, Texture],
 ) -> None:
-    """Write one view's records of a kind."""
-    device.dispatch(
-        "emit_with_normals" if passes.lacks_normals() else "emit",
-        channels | {"depths": depths, "records_out": target},
-        device.groups(*grid_of(table, kind, index)),
-        frame=frame_block(view.camera, passes.size),
-        views=table,
-        view=index,
-        receives=kind == "receivers",
-    )
+    """Write one view's records. textures: its channels, and "depths". targets: those of all views' records, by their
+    kinds."""
+    name = "emit_with_normals" if passes.lacks_normals() else "emit"
+    for kind, target in targets.items():
+        device.dispatch(
+            name,
+            textures | {"records_out": target},
+            device.groups(*grid_of(table, kind, index)),
+            frame=frame_block(view.camera, passes.size),
+            views=table,
+            view=index,
+            receives=kind == "receivers",
+        )
 
 
 def specular_emitters(views: list[View], records: Records) -> Texture:
@@ -97,5 +97,6 @@ def specular_emitters(views: list[View], records: Records) -> Texture:
     for index, view in enumerate(views):
         passes = view.load_specular()
         if passes is not None:
-            _emit(view, index, passes, upload(passes), records.depths, records.table, "emitters", target)
+            # Named nowhere here, the channels are freed before the next view's come.
+            _emit(view, index, passes, upload(passes) | {"depths": records.depths}, records.table, {"emitters": target})
     return target

@@ -100,6 +100,7 @@ BAND = (
 )
 EMITTERS = Field("count", "int", "of emitters")
 ENTRIES = Field("entries", "int", "of the table of emitters")
+BY_AREA = Field("by_area", "float", "share of the table in proportion to area, the rest to power")
 WORLD_POWER = Field("world_power", "float", "sum of the world light's mean radiance over r, g, b")
 SAMPLING = (
     *BAND,
@@ -220,10 +221,7 @@ PASSES = {
     ),
     "emit": Pass(("common/camera", *_VIEWS, "radiosity/emit"), _EMIT_CHANNELS, "records_out", _EMIT),
     "emit_with_normals": Pass(
-        ("common/camera", *_VIEWS, "common/geometric", "radiosity/emit"),
-        _EMIT_CHANNELS,
-        "records_out",
-        _EMIT,
+        ("common/camera", *_VIEWS, "common/geometric", "radiosity/emit"), _EMIT_CHANNELS, "records_out", _EMIT
     ),
     "radiate": Pass(("radiosity/views", "radiosity/radiate"), ("emitters", "irradiance"), "radiance_out"),
     "radiate_specular": Pass(
@@ -233,26 +231,11 @@ PASSES = {
         defines={"ADDS_DIFFUSE": "1"},
     ),
     "row_sums": Pass(
-        ("radiosity/views", "radiosity/row_sums"),
-        ("radiance",),
-        "sums_out",
-        (EMITTERS, WORLD_POWER),
-        STRIP,
-        format="RG32F",
+        ("radiosity/views", "radiosity/row_sums"), ("radiance",), "sums_out", (EMITTERS, WORLD_POWER), STRIP, "RG32F"
     ),
-    "row_starts": Pass(
-        ("radiosity/row_starts",),
-        ("sums",),
-        "starts_out",
-        (ENTRIES, Field("by_area", "float", "share of the table in proportion to area, the rest to power")),
-        STRIP,
-    ),
+    "row_starts": Pass(("radiosity/row_starts",), ("sums",), "starts_out", (ENTRIES, BY_AREA), STRIP),
     "table": Pass(
-        ("common/random", "radiosity/table"),
-        ("sums", "starts"),
-        "table_out",
-        (EMITTERS, ENTRIES, SEED),
-        format="R32F",
+        ("common/random", "radiosity/table"), ("sums", "starts"), "table_out", (EMITTERS, ENTRIES, SEED), format="R32F"
     ),
     "sample_blocks": Pass(
         (*_VIEWS, *_SAMPLE, "radiosity/receiver_block", "radiosity/sample_emitters"),

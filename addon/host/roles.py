@@ -74,7 +74,7 @@ def give_cameras(scene, number):
     if it already does."""
     if len(cameras(scene)) == number and scene.camera == scene.afterlight.own_camera:
         return
-    for each in {camera(scene), *cameras(scene)} - {None}:
+    for each in [each for each in scene.collection.objects if _is_intact(each, scene)]:
         _remove_camera(each)
     name = next(
         name
@@ -109,7 +109,7 @@ def cameras(scene):
 def remove(scene):
     """Remove one of our scenes and its cameras. A scene that holds anything of the user's is handed over to the user
     instead."""
-    ours = {scene.afterlight.own_camera, *cameras(scene)}
+    ours = {scene.afterlight.own_camera, *(each for each in scene.collection.objects if _is_intact(each, scene))}
     if _holds_things_of_the_user(scene, ours):
         _hand_over(scene)
         return

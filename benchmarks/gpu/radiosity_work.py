@@ -13,6 +13,7 @@ counted; what a layout costs (unpacking, indices, loops) is not, nor is the arit
 import re
 from dataclasses import dataclass
 from functools import cache
+from math import log2
 
 from . import ceilings
 
@@ -21,6 +22,7 @@ RECORD = 16  # bytes of a texel: of four float32, or a surfel
 ACCUMULATORS, ROUNDS = 8, 512  # vectors of a thread, and rounds over them, in the measurement of arithmetic
 
 CANDIDATE = 17  # a random number 8, the path to the emitter 3, its square 3, the receiver's cosine 3
+HASH = 8  # a random number
 FACED = 3  # of candidates before the receiver: the emitter's cosine
 FACING = 20  # of those that face it: form factor 4, power 3, pdf 2, weight 2, sum 1, another random number 8
 RAY = 22  # each view: both ends projected, by 9 multiply-adds and the lens, 2
@@ -65,6 +67,9 @@ def work(light, settings, size, count, shares):
                 texels of emitters and receivers.
     pack        as in ceilings.py, of the main view.
     radiate     once a bounce: radiance, albedo and area of each emitter, and the irradiance of its receiver.
+    row_sums    before each of those gathers: radiance and area of each emitter; two sums written.
+    row_starts  for each row of emitters the sums of all rows, and of those before it.
+    table       for each entry a search among the rows, and one within a row.
     sample_...  see _sample(). Blocks: all receivers, in each bounce but the last. Base: the last.
     reproject   surfels, those of the frame before, its light, and motion: a texel each.
     accumulate  surfels, irradiance, history; 5 x 5 taps of arithmetic.
@@ -100,6 +105,7 @@ def work(light, settings, size, count, shares):
             settings.bounces * RECORD * emitters,
             settings.bounces * 4 * emitters,
         ),
+        *_table(light, settings.bounces, emitters),
         _sample("sample_blocks", settings.bounces - 1, receivers, 2, shares.blocks, **bounce, **scene),
         _sample("sample_base", 1, base, 1, shares.base, settings.groups, settings.candidates, **scene),
         streams("reproject", 4 * RECORD * base, RECORD * base),
@@ -110,6 +116,26 @@ def work(light, settings, size, count, shares):
     if not settings.smooth:
         found = [each for each in found if each.stage != "smooth"]
     return [each for each in found if each.read]
+
+
+def _table(light, times, emitters):
+    """Works of the table of emitters, made `times` times."""
+    width, entries = light.shader_interface.RECORDS_WIDTH, light.radiosity.ENTRIES
+    rows = -(-emitters // width)
+    fetched, sums = rows * (rows + (rows - 1) / 2), 2 * NUMBER
+    searched = entries * log2(rows * width)
+    return [
+        Work("row_sums", times * RECORD * emitters, times * sums * emitters, times * emitters),
+        Work("row_starts", times * sums * rows, times * RECORD * rows, 0, times * fetched),
+        Work(
+            "table",
+            times * (sums * emitters + RECORD * rows),
+            times * NUMBER * entries,
+            times * entries * (log2(rows) + 1),
+            times * entries * log2(width),
+            times * (searched + HASH * entries),
+        ),
+    ]
 
 
 def _sample(stage, times, receivers, own, rays, groups, candidates, *, emitters, texels, count, light, visibility):
@@ -135,7 +161,7 @@ def _sample(stage, times, receivers, own, rays, groups, candidates, *, emitters,
         stage,
         read,
         times * receivers * RECORD,
-        times * receivers * own + drawn * (1 + rays.faced + rays.facing) + beside,
+        times * receivers * (own + 1) + drawn * (1 + rays.faced + rays.facing) + beside,
         drawn + looks,
         draws * candidates * CANDIDATE
         + drawn * (rays.faced * FACED + rays.facing * FACING)

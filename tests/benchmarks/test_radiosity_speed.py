@@ -15,7 +15,9 @@ sys.path.append(str(ROOT))
 from benchmarks.gpu import gpu_report, radiosity_rays, radiosity_speed, radiosity_work, repeats, room, speed
 
 RAYS = radiosity_rays.Rays(faced=0.5, facing=0.25, chosen=1.0, blocked=0.5, shown=1.5)
-PASSES = "depths emit pack radiate sample_blocks sample_base reproject accumulate smooth composite".split()
+PASSES = (
+    "depths emit pack radiate row_sums row_starts table sample_blocks sample_base reproject accumulate smooth composite"
+).split()
 STANDALONE = """
 import json, sys
 from benchmarks.gpu import opengl, radiosity_speed, room
@@ -39,6 +41,9 @@ def test_a_run_adds_up():
         "depths": 3,
         "emit": 6,
         "radiate": 3,
+        "row_sums": 3,
+        "row_starts": 3,
+        "table": 3,
         "sample_blocks": 2,
         "smooth": 2,
     }
@@ -55,23 +60,27 @@ def test_a_tiny_frame_counted_by_hand(light):
         work.stage: (work.read, work.written, work.wide, work.narrow, work.operations)
         for work in radiosity_work.work(light, settings, (8, 8), 2, shares)
     }
+    entries = light.radiosity.ENTRIES
     looks = 0.5 * 24 * 0.98 * 1.5 + 0.5 * 2  # of a draw
     expected = {
         "depths": (128 * 16, 128 * 8, 128 * 4, 0, 0),
         "emit": (128 * 52, 130 * 64, 128 * 13 / 4, 64, 64 * 28),
         "pack": (64 * 52, 64 * 16, 64 * 13 / 4, 0, 0),
         "radiate": (2 * (128 * 48 + 2 * 16), 2 * 128 * 16, 2 * 128 * 4, 0, 0),
+        "row_sums": (2 * 128 * 16, 2 * 128 * 8, 2 * 128, 0, 0),
+        "row_starts": (2 * 8, 2 * 16, 0, 2, 0),
+        "table": (2 * (128 * 8 + 16), 2 * 4 * entries, 2 * entries, 2 * entries * 8, 2 * entries * (8 + 8)),
         "sample_blocks": (
             2 * 32 + 128 * 52 + 128 * 4,
             2 * 16,
-            2 * 2 + 32 * (6 * 1.75 + 2),
+            2 * 3 + 32 * (6 * 1.75 + 2),
             32 * (6 + looks),
             32 * (8 * 17 + 6 * (0.5 * 3 + 0.25 * 20) + 1.5 * 22 + 10 * looks),
         ),
         "sample_base": (
             64 * 16 + 128 * 52 + 128 * 4,
             64 * 16,
-            64 + 128 * (3 * 1.75 + 1),
+            64 * 2 + 128 * (3 * 1.75 + 1),
             128 * (3 + looks),
             128 * (4 * 17 + 3 * (0.5 * 3 + 0.25 * 20) + 1.5 * 22 + 10 * looks),
         ),

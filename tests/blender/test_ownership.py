@@ -19,10 +19,10 @@ def scene(fresh):
 
 @pytest.fixture
 def with_views(scene):
-    """A lit scene with two automatic views: four helper scenes."""
+    """A lit scene with two automatic views: three helper scenes."""
     scene.afterlight.method, scene.afterlight.view_count = "RADIOSITY", 2
     scene.afterlight.enabled = True
-    assert len(ours()) == 4
+    assert len(ours()) == 3
     return scene
 
 
@@ -108,7 +108,7 @@ def test_an_object_that_is_nowhere_else_keeps_its_scene(with_views):
     (kept,) = thing.users_scene
     assert not kept.afterlight.role and not kept.name.startswith(".") and kept.render.engine == "BLENDER_EEVEE"
     with_views.afterlight.enabled = True
-    assert thing.users_scene == (kept,) and len(ours()) == 4
+    assert thing.users_scene == (kept,) and len(ours()) == 3
 
 
 @pytest.mark.parametrize("is_elsewhere", [True, False])
@@ -182,7 +182,7 @@ def test_a_helper_that_is_remapped(with_views, addon):
     with_views.afterlight.helper.user_remap(other)
     settle()
     addon.compositor.setup.connect(with_views)
-    assert not addon.compositor.faults.find(with_views) and len(ours()) == 4
+    assert not addon.compositor.faults.find(with_views) and len(ours()) == 3
     with_views.afterlight.enabled = False
     assert other.name == "Precious" and other.camera.name == "Treasure" and not ours()
 
@@ -193,7 +193,7 @@ def test_records_that_a_script_clears_multiply_nothing(with_views, addon):
         with_views.afterlight.view_scenes.clear()
         settle()
         addon.compositor.setup.connect(with_views)
-        assert len(ours()) == 4 and not addon.compositor.faults.find(with_views)
+        assert len(ours()) == 3 and not addon.compositor.faults.find(with_views)
     with_views.afterlight.helper = None
     with_views.afterlight.view_scenes.clear()
     with_views.afterlight.enabled = False
@@ -300,7 +300,7 @@ def test_a_file_of_0_3_0(afterlight, addon):
     bpy.ops.wm.open_mainfile(filepath=str(OF_0_3_0))
     settle()
     views, paper, lookalike = (bpy.data.scenes[name] for name in ("Views", "Paper", "Precious"))
-    assert len(bpy.data.scenes) == 8 and len(ours()) == 5 and not lookalike.afterlight.role
+    assert len(bpy.data.scenes) == 7 and len(ours()) == 4 and not lookalike.afterlight.role
     for scene in (views, paper):
         assert scene.afterlight.enabled and not addon.diagnosis.checks.findings(scene)
     assert tuple(views.afterlight.version) == afterlight.addon.properties.VERSION

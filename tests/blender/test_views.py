@@ -397,6 +397,7 @@ def test_a_view_that_fails_leaves_the_others(scene, views, afterlight, seen, tmp
     report = afterlight.addon.host.report
     scene.afterlight.enabled = True
     by_hand(scene, side_camera(), side_camera())
+    views.view_scene(scene).view_layers[0].use_pass_position = True
     check = afterlight.addon.scene.frame_store.check
 
     def cut(path):
