@@ -19,7 +19,7 @@ import numpy as np
 from ..host import engines, roles
 from ..host.assign import assign
 from ..host.roles import SCOUT, VIEW
-from ..scene import needs, passes, roughness, view_cameras
+from ..scene import cameras, needs, passes, roughness, view_cameras, view_world
 from ..views import placement
 from . import nodes, render_order
 
@@ -40,10 +40,9 @@ _RENDER = (
     "filter_size",
     "use_texture_cache",
 )
-_SCENE = ("world", "frame_subframe")
+_SCENE = ("frame_subframe",)
 _LAYER = (
     "material_override",
-    "world_override",
     "use_solid",
     "use_sky",
     "use_ao",
@@ -128,17 +127,22 @@ def mirror(scene):
         for name in names:
             assign(target, name, getattr(source, name))
     _simplify(scene.render, each.render)
+    overrides = _EEVEE_OVERRIDES | _coarser_shadows(scene.eevee)
     for prop in scene.eevee.bl_rna.properties:
         if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
-            assign(
-                each.eevee,
-                prop.identifier,
-                _EEVEE_OVERRIDES.get(prop.identifier, getattr(scene.eevee, prop.identifier)),
-            )
+            name = prop.identifier
+            assign(each.eevee, name, overrides.get(name, getattr(scene.eevee, name)))
     assign(each.view_settings, "exposure", scene.view_settings.exposure)  # EEVEE skips lights depending on it
     assign(each, "background_set", scene)
     for switch, _ in (roughness.COLOR, roughness.DIRECT):
         assign(view_layer, switch, needs.glossy_light(scene))
+
+
+def _coarser_shadows(eevee):
+    """EEVEE's settings for shadows of half the resolution, and of a quarter of the pixels, all in a pool."""
+    pools = [pool.identifier for pool in eevee.bl_rna.properties["shadow_pool_size"].enum_items]
+    fitting = [pool for pool in pools if 4 * int(pool) >= int(eevee.shadow_pool_size)]
+    return {"shadow_resolution_scale": eevee.shadow_resolution_scale / 2, "shadow_pool_size": fitting[0]}
 
 
 def _simplify(render, of_views):
@@ -181,6 +185,7 @@ def leave_all_out():
     for each in bpy.data.scenes:
         if each.afterlight.role in {VIEW, SCOUT} and each.library is None and roles.lit_scene(each):
             if each.afterlight.role == VIEW:
+                view_world.take_back(each)
                 for view in view_cameras.views(each):
                     view.use(False)
             assign(each.view_layers[0], "use", each.afterlight.role == SCOUT)
@@ -211,6 +216,8 @@ def prepare(scene):
     for view in views(scene):
         view.use(False)
     mirror(scene)
+    if each := view_scene(scene):
+        view_world.give(each, cameras.first_layer(scene).world_override or scene.world)
 
 
 def rendered_views(scene):

@@ -466,3 +466,30 @@ def test_the_picture_is_written_once_a_frame(scene, afterlight, tmp_path, monkey
     assert job.passes_file(scene) == path and written.count(scene) == 2 and Path(path).exists()
     afterlight.addon.render.job.end()
     assert not Path(path).exists()
+
+
+@pytest.mark.parametrize("kind", ["none", "one colour", "sky"])
+def test_the_world_of_the_views(scene, views, addon, tmp_path, kind):
+    """A world of one colour is copied for a frame, in the smallest resolution, and nothing of it stays."""
+    scene.world = None
+    if kind != "none":
+        scene.world = bpy.data.worlds.new("Sky")
+        tree = scene.world.node_tree
+        tree.nodes["Background"].inputs["Color"].default_value = (0.2, 0.4, 0.6, 1)
+        if kind == "sky":
+            sky = tree.nodes.new("ShaderNodeTexSky")
+            tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    scene.afterlight.views, scene.afterlight.enabled = "AUTOMATIC", True
+    view_scene, worlds, seen = views.view_scene(scene), set(bpy.data.worlds), []
+
+    def look(rendered, *_):
+        if rendered == view_scene:
+            seen.append((rendered.world == scene.world, rendered.world.probe_resolution))
+
+    bpy.app.handlers.frame_change_post.append(look)
+    try:
+        render(scene, tmp_path / "lit.exr")
+    finally:
+        bpy.app.handlers.frame_change_post.remove(look)
+    assert scene.afterlight.report == "" and seen == [(True, "1024") if kind == "sky" else (False, "128")]
+    assert set(bpy.data.worlds) == worlds and view_scene.world is None
