@@ -43,6 +43,8 @@ class AfterlightViewsEngine(report.Reporter, bpy.types.RenderEngine):
         start, evaluated = time.perf_counter(), job.evaluated
         if evaluated.error:
             raise evaluated.error
+        if evaluated.geometry is None:  # Afterlight was enabled after the frame had begun
+            return
         by_hand = scene.afterlight.views == "MANUAL"
         if by_hand:
             main_thread.run(lambda: self._pose_by_hand(scene, evaluated))
