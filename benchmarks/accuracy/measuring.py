@@ -49,6 +49,8 @@ def converge(truth, shown, surface, options):
     them."""
     for number in truth.of:
         truth.extend(number, options.first_samples // 2)
+    if not truth.final(truth.longest).any():
+        raise candidates.Unmeasurable("Cycles renders it black: it was made for EEVEE alone, and there is no truth")
     while True:
         rendered = shown + [fewer_bounces(truth, number) for number in truth.of if 0 <= number < truth.longest]
         noisy = {

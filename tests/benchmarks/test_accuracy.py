@@ -259,11 +259,15 @@ def test_the_key_follows_file_and_settings(shot, tmp_path):
 
 
 def test_a_run_of_it_all(shot, tmp_path):
-    """A box, a file without a camera, one that is no .blend and one that is not there: the box is measured, the others
-    are named, the exit code tells, and the pictures are there."""
-    good, blind, broken, absent = (tmp_path / f"{name}.blend" for name in ("good", "blind", "broken", "absent"))
+    """A box, a file without a camera, one that is black in Cycles, one that is no .blend and one that is not there: the
+    box is measured, the others are named, the exit code tells, and the pictures are there."""
+    names = "good", "dark", "blind", "broken", "absent"
+    good, dark, blind, broken, absent = (tmp_path / f"{name}.blend" for name in names)
     bpy.ops.wm.save_as_mainfile(filepath=str(good), copy=True)
-    shot.camera = None
+    lamp = bpy.data.lights["Lamp"]
+    power, lamp.energy = lamp.energy, 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(dark), copy=True)
+    shot.camera, lamp.energy = None, power
     bpy.ops.wm.save_as_mainfile(filepath=str(blind), copy=True)
     broken.write_bytes(b"not a .blend")
     before = good.read_bytes()
@@ -274,6 +278,7 @@ def test_a_run_of_it_all(shot, tmp_path):
             "-m",
             "benchmarks.accuracy",
             good,
+            dark,
             blind,
             broken,
             absent,
@@ -302,7 +307,7 @@ def test_a_run_of_it_all(shot, tmp_path):
     assert run.returncode in (1, 2), run.stderr  # 1: at so few samples a number may be refused
     found = {scene["name"]: scene for scene in json.loads((out / "accuracy.json").read_text())["scenes"]}
     assert "camera" in found["blind"]["skipped"] and "no such file" in found["absent"]["skipped"]
-    assert "skipped" in found["broken"] and "Traceback" not in run.stderr
+    assert "black" in found["dark"]["skipped"] and "skipped" in found["broken"] and "Traceback" not in run.stderr
     rows = {row["name"]: row for row in found["good"]["tables"][0]["rows"]}
     assert rows["EEVEE"]["indirect"]["energy"] == 0 and rows["EEVEE"]["indirect"]["l1"] == pytest.approx(1)
     lit = rows["Afterlight, Paper"]
