@@ -27,6 +27,8 @@ NAMES = {SCOUT: ".Afterlight Placement ({})", VIEW: ".Afterlight Views ({})"}
 MAX_DISTANCE = 1e9  # metres of a stored pose from the world's origin
 PLACEMENT_KEY = "placed"  # custom property of the placement scene
 SAMPLES = 1  # EEVEE's samples of a view; the gather averages its pixels down anyway
+LEAST_POOL = 128  # MB, of shadows, whose resolution stays: half of it made a lamp leak (docs/blender/views.md)
+POOL_PIXELS = 1 << 20  # of a picture that a pool of Blender's default size is for
 MAX_SUBDIVISIONS = 3  # of Subdivision modifiers in the views
 
 # Properties of the lit scene that affect its geometry and materials. EEVEE's own settings are all mirrored.
@@ -127,7 +129,7 @@ def mirror(scene):
         for name in names:
             assign(target, name, getattr(source, name))
     _simplify(scene.render, each.render)
-    overrides = _EEVEE_OVERRIDES | _coarser_shadows(scene.eevee)
+    overrides = _EEVEE_OVERRIDES | {"shadow_pool_size": _shadow_pool(scene)}
     for prop in scene.eevee.bl_rna.properties:
         if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
             name = prop.identifier
@@ -138,11 +140,14 @@ def mirror(scene):
         assign(view_layer, switch, needs.glossy_light(scene))
 
 
-def _coarser_shadows(eevee):
-    """EEVEE's settings for shadows of half the resolution, and of a quarter of the pixels, all in a pool."""
-    pools = [pool.identifier for pool in eevee.bl_rna.properties["shadow_pool_size"].enum_items]
-    fitting = [pool for pool in pools if 4 * int(pool) >= int(eevee.shadow_pool_size)]
-    return {"shadow_resolution_scale": eevee.shadow_resolution_scale / 2, "shadow_pool_size": fitting[0]}
+def _shadow_pool(scene):
+    """EEVEE's Shadow Pool Size for the views, which is cleared for each. Shadows take room in it as the picture has
+    pixels, and the user's is chosen for a whole one."""
+    width, height = cameras.window(scene)[0][2:]
+    users = int(scene.eevee.shadow_pool_size)
+    wanted = max(users * min(1, width * height / POOL_PIXELS), min(users, LEAST_POOL))
+    pools = [pool.identifier for pool in scene.eevee.bl_rna.properties["shadow_pool_size"].enum_items]
+    return next(pool for pool in pools if int(pool) >= wanted)
 
 
 def _simplify(render, of_views):
