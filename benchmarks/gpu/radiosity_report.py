@@ -67,7 +67,7 @@ def chapter(part):
             text=2,
         ),
         "All passes, and the whole of `gather_views()` on the clock, arrays in and an array out: that adds the "
-        "transfers to and from the GPU, and the host's own work, such as the table of emitters in each bounce.",
+        "transfers to and from the GPU.",
         table(
             (
                 "preset",
