@@ -162,17 +162,14 @@ def _simplify(render, of_views):
 
 def is_incomplete(scene):
     """Whether any scene or node that connect() makes is missing."""
-    ours, placing, rendering = _own(scene), placement_scene(scene), view_scene(scene)
-    if len(ours) != _scene_count(scene):
+    ours = _own(scene)
+    if tuple(each.afterlight.role for each in ours) != _wanted_roles(scene):
         return True
-    if ours and not (
-        placing is not None
-        and placing.camera is not None
-        and placing.camera == roles.camera(placing)
-        and rendering is not None
-        and view_cameras.is_set_up(rendering, needs.views(scene))
-    ):
-        return True
+    if ours:
+        placing, rendering = ours
+        has_camera = placing.camera is not None and placing.camera == roles.camera(placing)
+        if not has_camera or not view_cameras.is_set_up(rendering, needs.views(scene)):
+            return True
     tree = scene.compositing_node_group
     shown_scenes = (
         [node.scene for node in tree.nodes if nodes.role(node) == "view" and node.scene in ours] if tree else []
@@ -263,15 +260,15 @@ def _own(scene):
     ]
 
 
-def _scene_count(scene):
-    """How many such scenes `scene` needs: one that places the views, and one that renders them; 0 without views."""
-    return 2 if needs.views(scene) else 0
+def _wanted_roles(scene):
+    """The roles of such scenes that `scene` needs: one places the views, and one renders them; none without views."""
+    return (SCOUT, VIEW) if needs.views(scene) else ()
 
 
 def _ensure_scenes(scene):
     """Make missing scenes and remove superfluous ones: 0.3.0 made one for each view. Returns the scenes that `scene`
     names but that belong to another: the scene that it was copied from."""
-    slots, wanted = scene.afterlight.view_scenes, (SCOUT, VIEW)[: _scene_count(scene)]
+    slots, wanted = scene.afterlight.view_scenes, _wanted_roles(scene)
     named = [each.scene for each in slots if each.scene is not None]
     found = {role: roles.own(scene, role) for role in (SCOUT, VIEW)}
     foreign_scenes, ours = set(named).difference(*found.values()), []

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The world that a view scene is rendered with.
 
-EEVEE takes a picture of the world for every view, in the world's own resolution, and that is a third of a small view's
-time on the processor. A world of one colour is the same in any resolution: for the time of a frame the view scene has a
+EEVEE takes a picture of the world for every view, in the world's own resolution, which may take longer than the view
+itself. A world of one colour is the same in any resolution: for the time of a frame the view scene has a
 copy of it, in the smallest one. So it has a black one where there is no world, of which EEVEE takes a picture as well.
 """
 
